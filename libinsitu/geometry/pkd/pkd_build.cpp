@@ -116,7 +116,8 @@ void build_index(const PkdTree& tree, std::uint32_t* index) {
       return build(tree, IndexStore<kernels::IndexedPositions<float>, std::uint32_t>(tree, index));
     case PkdLayout::indexed_f64:
       return build(tree, IndexStore<kernels::IndexedPositions<double>, std::uint32_t>(tree, index));
-    default: return build(tree, IndexStore<kernels::GeneralPositions, std::uint32_t>(tree, index));
+    default:
+      return build(tree, IndexStore<kernels::GeneralPositions, std::uint32_t>(tree, index));
   }
 }
 
@@ -126,9 +127,12 @@ void build_index(const PkdTree& tree, std::uint64_t* index) {
 
 void build_columns(const PkdTree& tree, const std::vector<MovedColumn>& columns) {
   switch (layout_of(tree)) {
-    case PkdLayout::placed_f32: return build_placed<float>(tree, columns);
-    case PkdLayout::placed_f64: return build_placed<double>(tree, columns);
-    default: return build(tree, ColumnsStore<kernels::GeneralPositions>(tree, columns));
+    case PkdLayout::placed_f32:
+      return build_placed<float>(tree, columns);
+    case PkdLayout::placed_f64:
+      return build_placed<double>(tree, columns);
+    default:
+      return build(tree, ColumnsStore<kernels::GeneralPositions>(tree, columns));
   }
 }
 

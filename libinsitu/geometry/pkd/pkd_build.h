@@ -8,10 +8,10 @@
 
 namespace insitu {
 
-// Each puts the particles at places [0, tree.count) into tree order, with as many threads as the caller's TBB arena has.
-// `tree` is complete but for the order: position, count, box, radius, prefer. Beyond the data they need about 1.5 MB of
-// scratch memory per thread (and the longest record times 32768 for build_columns). Throw std::bad_alloc; what was moved
-// by then is a permutation all the same.
+// Each puts the particles at places [0, tree.count) into tree order, with as many threads as the caller's TBB arena
+// has. `tree` is complete but for the order: position, count, box, radius, prefer. Beyond the data they need about 1.5
+// MB of scratch memory per thread (and the longest record times 32768 for build_columns). Throw std::bad_alloc; what
+// was moved by then is a permutation all the same.
 
 // tree.index32 or tree.index64 is `index` and holds the items in any order.
 void build_index(const kernels::PkdTree& tree, std::uint32_t* index);

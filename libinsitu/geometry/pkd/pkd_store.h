@@ -1,5 +1,5 @@
-// What the build of a P-k-d tree moves: an index, packed coordinates, or any number of arrays together. The interface is
-// the Store of kernels/pkd_select.h, and
+// What the build of a P-k-d tree moves: an index, packed coordinates, or any number of arrays together. The interface
+// is the Store of kernels/pkd_select.h, and
 //   bool prefer(a, b)              the particle at place a is to be shown rather than the coincident one at b
 //   void apply(begin, items, n)    the particle now at begin + i is the one that was at begin + items[i].local
 #pragma once
@@ -106,7 +106,7 @@ class ColumnsStore {
       : tree_(tree), positions_(tree), columns_(columns) {}
 
   Key key(std::uint64_t place, int axis) const { return positions_.key(place, axis); }
-  bool prefer(std::uint64_t a, std::uint64_t b) const { return prefer_item(tree_, a, b); }
+  bool prefer(std::uint64_t a, std::uint64_t b) const { return prefer_item(tree_, tree_.item(a), tree_.item(b)); }
 
   void swap(std::uint64_t a, std::uint64_t b) {
     if (a == b) return;

@@ -138,7 +138,7 @@ enum {
 typedef struct insitu_array {
   uint32_t struct_size;
   uint32_t type;       /* INSITU_F32 ... INSITU_U64 */
-  uint32_t components; /* 1 to 4 */
+  uint32_t components; /* 1 to 4; u8 payload may have any number: whole records as bytes */
   uint32_t flags;      /* INSITU_ARRAY_* */
   uint64_t count;      /* items; 0 with NULL pointers is a normal, empty array */
   int64_t stride_bytes;
@@ -218,7 +218,7 @@ INSITU_API insitu_status insitu_particles_update(insitu_context context, insitu_
                                                  const insitu_particles_desc *desc);
 /* After insitu_commit: original[i] = the place that the particle now at place i of the tree's order had when the step
  * began. With PERMUTE that is the order of the arrays (needs KEEP_PERMUTATION), otherwise that of the index or copy.
- * `count` is the number of entries of `original`; skipped particles stand at the end in their original order.
+ * `count` is the number of entries of `original`; skipped particles stand at the end.
  * Errors: wrong_state (not committed, or not kept), invalid_argument (count too small). */
 INSITU_API insitu_status insitu_particles_permutation(insitu_context context, insitu_geometry particles,
                                                       uint64_t *original, uint64_t count);

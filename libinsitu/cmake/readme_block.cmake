@@ -1,0 +1,28 @@
+# Replaces what stands between two marker lines of a Markdown file:
+#   <!-- begin NAME ... -->
+#   <!-- end NAME -->
+# With CHECK it only compares, and says with which command the block is brought up to date.
+function(readme_block file name text check command)
+  file(READ "${file}" readme)
+  string(REGEX MATCH "<!-- begin ${name}[^\n]*-->\n" begin "${readme}")
+  set(end "<!-- end ${name} -->")
+  string(FIND "${readme}" "${begin}" begin_at)
+  string(FIND "${readme}" "${end}" end_at)
+  if(begin STREQUAL "" OR end_at LESS begin_at)
+    message(FATAL_ERROR "${file} has no block '${name}'")
+  endif()
+  string(LENGTH "${begin}" length)
+  math(EXPR begin_at "${begin_at} + ${length}")
+  math(EXPR length "${end_at} - ${begin_at}")
+  string(SUBSTRING "${readme}" ${begin_at} ${length} old)
+  if(old STREQUAL "${text}")
+    message(STATUS "block '${name}' of ${file} is up to date")
+  elseif(check)
+    message(FATAL_ERROR "block '${name}' of ${file} is out of date; this brings it up to date:\n  ${command}")
+  else()
+    string(SUBSTRING "${readme}" 0 ${begin_at} before)
+    string(SUBSTRING "${readme}" ${end_at} -1 after)
+    file(WRITE "${file}" "${before}${text}${after}")
+    message(STATUS "block '${name}' of ${file} written")
+  endif()
+endfunction()

@@ -1,0 +1,23 @@
+// The first pass over the arrays of a step: which particles can be drawn, and within which bounds.
+#pragma once
+
+#include "kernels/pkd_tree.h"
+
+namespace insitu {
+
+// Positions beyond this magnitude would overflow when squared in double; they count as not finite.
+constexpr double largest_coordinate = 1e100;
+
+struct ScanResult {
+  double lower[3];  // of the centres of drawn particles
+  double upper[3];
+  double radius_max;
+  std::uint64_t drawn;
+};
+
+bool is_drawable(const kernels::PkdTree& tree, std::uint64_t item);
+
+// All items of tree.position, in parallel. `judge_radius` false: positions alone decide.
+ScanResult scan_particles(const kernels::PkdTree& tree, bool judge_radius);
+
+}  // namespace insitu

@@ -1,0 +1,115 @@
+// A set of particles: the arrays of this step, the tree over them, and how they look.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/budget.h"
+#include "core/workers.h"
+#include "geometry/array_view.h"
+#include "kernels/pkd_tree.h"
+#include "kernels/ray.h"
+
+namespace insitu {
+
+struct NamedView {
+  std::string name;
+  kernels::ArrayView view;
+};
+
+// Everything that an update brings; checked, and borrowed until release().
+struct ParticleArrays {
+  kernels::ArrayView position;
+  double position_scale = 1.0;  // integers: world = origin + scale * value
+  double position_origin[3] = {};
+  std::optional<kernels::ArrayView> radius;
+  std::optional<kernels::ArrayView> type;
+  std::vector<double> type_radius;
+  double radius_default = 0.0;  // 0: half the mean spacing
+  double radius_scale = 1.0;
+  std::vector<NamedView> attributes;
+  std::vector<kernels::ArrayView> payload;
+};
+
+struct ValueRange {
+  double low;
+  double high;
+  bool empty() const { return !(low <= high); }
+};
+
+enum class ParticleOrder : std::uint32_t { index = 0, permute = 1, copy = 2 };  // as INSITU_ORDER_*
+
+class Particles {
+ public:
+  Particles(std::string name, ParticleOrder order, bool keep_permutation);
+  Particles(const Particles&) = delete;
+  Particles& operator=(const Particles&) = delete;
+
+  const std::string& name() const { return name_; }
+  ParticleOrder order() const { return order_; }
+
+  void bind(ParticleArrays arrays);
+  bool is_bound() const { return arrays_.has_value(); }
+  // Builds the tree; with ParticleOrder::permute this is what moves the arrays. Call within `workers`.
+  void build(Budget& budget);
+  bool is_built() const { return built_; }
+  // Forgets the arrays. What the index occupies is kept for the next step.
+  void release();
+
+  std::uint64_t item_count() const { return arrays_ ? arrays_->position.count : 0; }
+  std::uint64_t drawn_count() const { return built_ ? tree_.count : 0; }
+  std::uint64_t borrowed_bytes() const;
+  std::uint64_t copied_bytes() const { return copy_.bytes(); }
+  std::uint64_t index_bytes() const { return index32_.bytes() + index64_.bytes(); }
+
+  // World space, radii included; lower > upper when nothing is drawn.
+  void bounds(double lower[3], double upper[3]) const;
+
+  // Rays and hits in world space.
+  void first_hits(const kernels::Ray* rays, kernels::Hit* hits, std::size_t count) const;
+  void any_hits(const kernels::Ray* rays, std::uint8_t* occluded, std::size_t count) const;
+  std::vector<kernels::Span> all_hits(const kernels::Ray& ray) const;
+  void centre(std::uint64_t item, double out[3]) const;
+  double radius(std::uint64_t item) const;
+
+  // "type" is the type array. nullptr when there is none of that name; attribute_names() lists those that are.
+  const kernels::ArrayView* attribute(const std::string& name) const;
+  std::string attribute_names() const;
+
+  // insitu_particles_permutation and insitu_particles_restore_order.
+  void permutation(std::uint64_t* original, std::uint64_t count) const;
+  void restore_order();
+
+  // One sentence for every attribute with non-finite values. Call within the workers.
+  std::vector<std::string> describe_bad_values() const;
+  // Sums over all records, alike for any order of them: changes when a bit of the borrowed arrays changes.
+  std::uint64_t checksum() const;
+
+  const kernels::PkdTree& tree() const { return tree_; }
+
+ private:
+  void build_over_index(Budget& budget);
+  void build_in_place(Budget& budget);
+  void build_copy(Budget& budget);
+  static bool prefer(const void* self, std::uint64_t a, std::uint64_t b);
+
+  std::string name_;
+  ParticleOrder order_;
+  bool keep_permutation_;
+  bool built_ = false;
+  std::optional<ParticleArrays> arrays_;
+  ColumnSet moved_;
+  kernels::PkdTree tree_;  // in the space of the arrays: for integer positions, the lattice
+  // Place in the tree -> item; with ParticleOrder::permute and on request: place now -> place when the step began.
+  BudgetVector<std::uint32_t> index32_;
+  BudgetVector<std::uint64_t> index64_;
+  BudgetVector<std::byte> copy_;  // packed positions in tree order
+};
+
+// Smallest and largest finite value; component as in insitu_style. Call within the workers.
+ValueRange value_range(const kernels::ArrayView& view, std::uint32_t component);
+// The value that a style colours by: of the only component, of one component (1 to 4), or the length of a vector (0).
+double styled_value(const kernels::ArrayView& view, std::uint64_t item, std::uint32_t component);
+
+}  // namespace insitu

@@ -1,0 +1,48 @@
+// Pixels from a committed scene.
+#pragma once
+
+#include <glm/vec4.hpp>
+#include <vector>
+
+#include "image/framebuffer.h"
+#include "renderer/effects.h"
+#include "scene/scene.h"
+
+namespace insitu {
+
+struct RenderSettings {
+  Camera camera;
+  std::vector<Light> lights;
+  Effects effects;
+  glm::dvec4 background{1.0};  // linear RGB, not premultiplied, and opacity
+  std::uint32_t samples_per_pixel = 4;
+};
+
+// Rays and seconds of one effect; seconds are those of all threads added up.
+struct PassCost {
+  std::uint64_t rays = 0;
+  double seconds = 0.0;
+  PassCost& operator+=(const PassCost& other) {
+    rays += other.rays;
+    seconds += other.seconds;
+    return *this;
+  }
+};
+
+struct RenderCosts {
+  PassCost camera;
+  PassCost shadows;
+  PassCost ambient_occlusion;
+  RenderCosts& operator+=(const RenderCosts& other) {
+    camera += other.camera;
+    shadows += other.shadows;
+    ambient_occlusion += other.ambient_occlusion;
+    return *this;
+  }
+};
+
+// Fills `frame`, tile by tile, with as many threads as the caller's TBB arena has. The result is the same, bit for bit,
+// for any number of them.
+RenderCosts render_frame(const Scene& scene, const RenderSettings& settings, FrameBuffer& frame);
+
+}  // namespace insitu

@@ -1,0 +1,74 @@
+#include "scene/style.h"
+
+#include <cmath>
+
+#include "core/error.h"
+
+namespace insitu {
+
+Style make_style(const insitu_style& description) {
+  const auto refuse = [](const std::string& text) { throw Error(INSITU_ERROR_INVALID_ARGUMENT, "style: " + text); };
+  Style style;
+  switch (description.color_by) {
+    case INSITU_COLOR_UNIFORM:
+      break;
+    case INSITU_COLOR_ATTRIBUTE:
+      style.by_attribute = true;
+      break;
+    default:
+      refuse("color_by is neither INSITU_COLOR_UNIFORM nor INSITU_COLOR_ATTRIBUTE");
+  }
+  if (style.by_attribute) {
+    if (description.attribute == nullptr || *description.attribute == '\0') refuse("attribute has no name");
+    style.attribute = description.attribute;
+  }
+  style.component = description.component;
+  if (style.component > 4) refuse("component is 0 (value or length) or 1 to 4");
+  if (description.range_mode > INSITU_RANGE_FIXED) refuse("range_mode is neither AUTO nor FIXED");
+  style.fixed_range = description.range_mode == INSITU_RANGE_FIXED;
+  if (style.fixed_range) {
+    style.range[0] = description.range[0];
+    style.range[1] = description.range[1];
+    if (!std::isfinite(style.range[0]) || !std::isfinite(style.range[1])) refuse("range is not finite");
+  }
+  if (description.colormap != nullptr) style.colormap_name = description.colormap;
+  style.own_map = description.own_map.id;
+  if (style.own_map == 0 && builtin_colormap(style.colormap_name) == nullptr) {
+    std::string names;
+    for (const std::string& name : builtin_colormap_names()) names += (names.empty() ? "" : ", ") + name;
+    refuse("unknown colour map '" + style.colormap_name + "'; there are: " + names);
+  }
+  const double* rgb = description.color;
+  for (int c = 0; c < 3; ++c)
+    if (!(rgb[c] >= 0.0 && std::isfinite(rgb[c]))) refuse("color is negative or not finite");
+  if (rgb[0] != 0.0 || rgb[1] != 0.0 || rgb[2] != 0.0)
+    style.color = {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2]), 1.0f};
+  return style;
+}
+
+Colors::Colors(const Style& style, const Particles& particles, const Colormap& map)
+    : map_(&map), component_(style.component), uniform_(style.color) {
+  if (!style.by_attribute) return;
+  values_ = particles.attribute(style.attribute);
+  if (values_ == nullptr)
+    throw Error(INSITU_ERROR_INVALID_ARGUMENT, particles.name() + ": there is no attribute '" + style.attribute +
+                                                   "' to colour by; there are: " + particles.attribute_names());
+  if (component_ > values_->components)
+    throw Error(INSITU_ERROR_INVALID_ARGUMENT, particles.name() + ": attribute '" + style.attribute + "' has " +
+                                                   std::to_string(values_->components) + " components, not " +
+                                                   std::to_string(component_));
+  if (map.kind() == ColormapKind::categorical) return;
+  range_ = style.fixed_range ? ValueRange{style.range[0], style.range[1]} : value_range(*values_, component_);
+}
+
+Rgba Colors::of(std::uint64_t item) const {
+  if (values_ == nullptr) return uniform_;
+  const double value = styled_value(*values_, item, component_);
+  if (map_->kind() == ColormapKind::categorical) return map_->lookup(value);
+  // One value everywhere: the middle of the map. A falling range turns the map round. Halves keep the difference
+  // finite.
+  const double extent = 0.5 * range_.high - 0.5 * range_.low;
+  return map_->lookup(extent == 0.0 && !std::isnan(value) ? 0.5 : (0.5 * value - 0.5 * range_.low) / extent);
+}
+
+}  // namespace insitu

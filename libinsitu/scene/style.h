@@ -1,0 +1,43 @@
+// How a geometry looks: what insitu_style describes, and what it comes to with the data of a step.
+#pragma once
+
+#include <string>
+
+#include "geometry/particles/particles.h"
+#include "insitu/insitu.h"
+#include "scene/colormap.h"
+
+namespace insitu {
+
+struct Style {
+  bool by_attribute = false;
+  std::string attribute;
+  std::uint32_t component = 0;  // as in insitu_style
+  bool fixed_range = false;
+  double range[2] = {0.0, 1.0};
+  std::string colormap_name = "viridis";
+  std::uint64_t own_map = 0;  // id of an insitu_colormap; 0 = the map of that name
+  Rgba color{0.8f, 0.8f, 0.8f, 1.0f};
+};
+
+// Throws Error(invalid_argument); names the valid colour maps when the one asked for is unknown.
+Style make_style(const insitu_style& description);
+
+// Colours of a geometry in one step; borrows its arrays and the map.
+class Colors {
+ public:
+  // Throws Error(invalid_argument) when the attribute does not exist; the text lists those that do.
+  // Reads the attribute once when the range is automatic: call within the workers.
+  Colors(const Style& style, const Particles& particles, const Colormap& map);
+  Rgba of(std::uint64_t item) const;
+  ValueRange range() const { return range_; }
+
+ private:
+  const kernels::ArrayView* values_ = nullptr;  // nullptr: uniform
+  const Colormap* map_;
+  std::uint32_t component_;
+  Rgba uniform_;
+  ValueRange range_{0.0, 1.0};
+};
+
+}  // namespace insitu

@@ -1,0 +1,29 @@
+// How the particles of a frame look: what the options ask for, and what fits the data where they say nothing.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "frame.h"
+#include "options.h"
+
+namespace replay {
+
+struct ColorChoice {
+  std::string attribute;  // empty: one colour for all
+  std::uint32_t component = 0;
+  std::string colormap;
+  std::array<double, 3> color = {0.8, 0.8, 0.8};  // linear
+};
+
+struct RadiusChoice {
+  std::vector<float> per_particle;  // empty: one for all
+  double for_all = 0.0;             // 0: left to the library
+};
+
+// Both throw UsageError with the names that would be valid.
+ColorChoice choose_color(const Frame& frame, const Options& options);
+RadiusChoice choose_radius(const Frame& frame, const Options& options);
+
+}  // namespace replay

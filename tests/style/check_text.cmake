@@ -1,0 +1,38 @@
+# No tabs, no spaces at line ends, no CR, a newline at the end of each file.
+#   cmake -DROOT=<source folder> -P check_text.cmake
+cmake_minimum_required(VERSION 3.25)
+set(names *.h *.hpp *.c *.cc *.cpp *.cmake *.cmake.in *.pc.in *.map *.md *.txt *.sh *.supp *.yaml *.yml *.json
+    .clang-format .clang-tidy demo run sanitizers tidy)
+list(TRANSFORM names PREPEND "--include=" OUTPUT_VARIABLE includes)
+execute_process(
+  COMMAND grep -rnIP "\\t|\\r| +$" --exclude-dir=build --exclude-dir=.git ${includes} .
+  WORKING_DIRECTORY "${ROOT}" OUTPUT_VARIABLE found RESULT_VARIABLE result)
+if(result GREATER 1)
+  message(FATAL_ERROR "grep failed")
+endif()
+
+set(globs "")
+foreach(folder IN ITEMS .ci adapters docs kernels libinsitu mini-apps tests)
+  list(TRANSFORM names PREPEND "${ROOT}/${folder}/" OUTPUT_VARIABLE more)
+  list(APPEND globs ${more})
+endforeach()
+file(GLOB_RECURSE files LIST_DIRECTORIES FALSE ${globs} "${ROOT}/.ci/run")
+list(LENGTH files count)
+if(count LESS 20)
+  message(FATAL_ERROR "only ${count} files found: this script looks in the wrong place")
+endif()
+foreach(file IN LISTS files)
+  file(SIZE "${file}" size)
+  if(size EQUAL 0)
+    continue()
+  endif()
+  math(EXPR last "${size} - 1")
+  file(READ "${file}" byte OFFSET ${last} HEX)
+  if(NOT byte STREQUAL "0a")
+    string(APPEND found "${file}: no newline at the end\n")
+  endif()
+endforeach()
+if(NOT found STREQUAL "")
+  message(FATAL_ERROR "tabs, spaces at line ends or missing newlines:\n${found}")
+endif()
+message(STATUS "${count} files are clean")
