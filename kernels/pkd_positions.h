@@ -22,8 +22,14 @@ class PlacedPositions {
   T key(std::uint64_t place, int axis) const {
     return load<T>(base_[axis] + static_cast<std::ptrdiff_t>(place) * stride_);
   }
+  void prefetch(std::uint64_t place) const {
+    __builtin_prefetch(base_[0] + static_cast<std::ptrdiff_t>(place) * stride_);
+  }
   void centre(std::uint64_t place, double out[3]) const {
     for (int c = 0; c < 3; ++c) out[c] = static_cast<double>(key(place, c));
+  }
+  void centre_f32(std::uint64_t place, float out[3]) const {
+    for (int c = 0; c < 3; ++c) out[c] = static_cast<float>(key(place, c));
   }
   // Packed x y z x y z ..., or three packed columns: whole vectors can be loaded.
   bool packed_records() const { return records_; }
@@ -51,9 +57,14 @@ class IndexedPositions {
   T key(std::uint64_t place, int axis) const {
     return load<T>(base_[axis] + static_cast<std::ptrdiff_t>(index_[place]) * stride_);
   }
+  void prefetch(std::uint64_t place) const { __builtin_prefetch(index_ + place); }
   void centre(std::uint64_t place, double out[3]) const {
     const std::ptrdiff_t offset = static_cast<std::ptrdiff_t>(index_[place]) * stride_;
     for (int c = 0; c < 3; ++c) out[c] = static_cast<double>(load<T>(base_[c] + offset));
+  }
+  void centre_f32(std::uint64_t place, float out[3]) const {
+    const std::ptrdiff_t offset = static_cast<std::ptrdiff_t>(index_[place]) * stride_;
+    for (int c = 0; c < 3; ++c) out[c] = static_cast<float>(load<T>(base_[c] + offset));
   }
 
  private:
@@ -71,7 +82,13 @@ class GeneralPositions {
   double key(std::uint64_t place, int axis) const {
     return tree_.position.value(tree_.position_of_place(place), static_cast<std::uint32_t>(axis));
   }
+  void prefetch(std::uint64_t) const {}
   void centre(std::uint64_t place, double out[3]) const { tree_.centre(place, out); }
+  void centre_f32(std::uint64_t place, float out[3]) const {
+    double centre[3];
+    tree_.centre(place, centre);
+    for (int c = 0; c < 3; ++c) out[c] = static_cast<float>(centre[c]);
+  }
 
  private:
   const PkdTree& tree_;

@@ -1,8 +1,8 @@
 // Selection for the build of a P-k-d tree: puts the particle of the wanted rank in its place along one axis, those that
 // are not above it before it and those that are not below it behind it.
 //
-// Pivots are taken from a sample at a rank a little beyond the wanted one (after Floyd and Rivest, "Expected time bounds
-// for selection", CACM 18(3), 1975): two partitions, of n and about n/2 particles, leave a few percent of n. The
+// Pivots are taken from a sample at a rank a little beyond the wanted one (after Floyd and Rivest, "Expected time
+// bounds for selection", CACM 18(3), 1975): two partitions, of n and about n/2 particles, leave a few percent of n. The
 // partition has no branch on the data (Lomuto's, always swapping), which is what makes it several times faster than
 // std::nth_element on random data.
 //
@@ -59,8 +59,8 @@ class RecordStore {
   Record* records_;
 };
 
-// The pivot for rank `wanted` of n places: from a sorted sample, beyond the wanted rank towards the longer side, so that
-// the wanted place is left in the shorter part.
+// The pivot for rank `wanted` of n places: from a sorted sample, beyond the wanted rank towards the longer side, so
+// that the wanted place is left in the shorter part.
 template <class Store>
 typename Store::Key sample_pivot(const Store& store, std::uint64_t begin, std::uint64_t end, std::uint64_t wanted,
                                  int axis) {

@@ -14,7 +14,8 @@ class FirstHitVisitor {
  public:
   static constexpr bool one_of_coincident = true;
 
-  FirstHitVisitor(const Ray& ray, Hit& hit) : hit_(hit), limit_(std::min(ray.t_max, hit.t)) {}
+  FirstHitVisitor() = default;
+  FirstHitVisitor(const Ray& ray, Hit& hit) : hit_(&hit), limit_(std::min(ray.t_max, hit.t)) {}
 
   double t_limit() const { return limit_; }
 
@@ -25,9 +26,9 @@ class FirstHitVisitor {
     const std::uint64_t item = tree.item(place);
     const double t = sphere_first_hit(ray.origin, ray.direction, centre, tree.radius.value(item), ray.t_min);
     if (!(t <= limit_) || item == ray.exclude) return false;
-    if (t == limit_ && hit_.t == t && !is_preferred(tree, item)) return false;
+    if (t == limit_ && hit_->t == t && !is_preferred(tree, item)) return false;
     limit_ = t;
-    hit_ = {t, item};
+    *hit_ = {t, item};
     here_ = true;
     return false;
   }
@@ -35,19 +36,20 @@ class FirstHitVisitor {
  private:
   // At exactly the same distance: a hit of another tree stays, one of this tree is weighed by the tree's own rule.
   bool is_preferred(const PkdTree& tree, std::uint64_t item) const {
-    if (!here_ || item == hit_.item) return false;
-    return tree.prefer != nullptr ? tree.prefer(tree.prefer_context, item, hit_.item) : item < hit_.item;
+    if (!here_ || item == hit_->item) return false;
+    return tree.prefer != nullptr ? tree.prefer(tree.prefer_context, item, hit_->item) : item < hit_->item;
   }
 
-  Hit& hit_;
-  double limit_;
-  bool here_ = false;  // hit_ is of this tree
+  Hit* hit_ = nullptr;
+  double limit_ = 0.0;
+  bool here_ = false;  // *hit_ is of this tree
 };
 
 class AnyHitVisitor {
  public:
   static constexpr bool one_of_coincident = true;
 
+  AnyHitVisitor() = default;
   explicit AnyHitVisitor(const Ray& ray) : limit_(ray.t_max) {}
 
   double t_limit() const { return limit_; }
@@ -65,7 +67,7 @@ class AnyHitVisitor {
   bool found = false;
 
  private:
-  double limit_;
+  double limit_ = 0.0;
 };
 
 class AllHitsVisitor {

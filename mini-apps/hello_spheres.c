@@ -3,19 +3,18 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { BALLS = 3000, STEPS = 24 };
+enum { BALLS = 3000, STEPS = 12 };
 struct ball { /* whatever a simulation keeps of a ball; the library reads the fields it is told of where they are */
-  double position[3], speed;
+  double position[3], energy;
   float radius;
 } balls[BALLS];
 
 static void move_balls(double time) {
   for (int i = 0; i < BALLS; i++) {
     double distance = sqrt(i + 0.5), angle = 2.399963229728653 * i; /* the golden angle, in radians */
-    double crest = 4.0 * exp(-0.03 * distance), phase = 0.35 * distance - time;
-    balls[i] = (struct ball){.position = {distance * cos(angle), distance * sin(angle), crest * sin(phase)},
-                             .speed = fabs(crest * cos(phase)),
-                             .radius = (float)(0.55 + 0.004 * distance)};
+    double height = 5.0 * exp(-0.03 * distance) * sin(0.42 * distance - time);
+    balls[i] = (struct ball){
+        .position = {distance * cos(angle), distance * sin(angle), height}, .energy = 9.81 * height, .radius = 0.98f};
   }
 }
 
@@ -26,21 +25,23 @@ int main(void) {
   /* What there is to see, and how it looks. Every struct starts with its size, and zero means the default. */
   insitu_array position = insitu_array_records(INSITU_F64, 3, balls[0].position, BALLS, sizeof balls[0]);
   insitu_array radius = insitu_array_records(INSITU_F32, 1, &balls[0].radius, BALLS, sizeof balls[0]);
-  insitu_array speed = insitu_array_records(INSITU_F64, 1, &balls[0].speed, BALLS, sizeof balls[0]);
-  insitu_attribute attribute = {"speed", &speed};
+  insitu_array energy = insitu_array_records(INSITU_F64, 1, &balls[0].energy, BALLS, sizeof balls[0]);
+  insitu_attribute attribute = {"energy", &energy};
   insitu_particles_desc particles = {sizeof particles, .name = "balls"};
   insitu_geometry geometry;
   insitu_particles_create(context, &particles, &geometry);
-  insitu_style style = {sizeof style, INSITU_COLOR_ATTRIBUTE, .attribute = "speed"};
+  insitu_style style = {sizeof style, INSITU_COLOR_ATTRIBUTE, .attribute = "energy", .colormap = "inferno"};
   insitu_geometry_set_style(context, geometry, &style);
 
   /* From where, in which light, on how many pixels. */
-  insitu_camera camera = {sizeof camera, .eye = {0, -75, 60}, .up = {0, 0, 1}, .fov_y_deg = 40};
-  insitu_effects effects = {sizeof effects, INSITU_EFFECT_SHADOWS | INSITU_EFFECT_AMBIENT_OCCLUSION, .ao_samples = 16};
-  insitu_view_desc view_desc = {sizeof view_desc, .camera = &camera, .effects = &effects};
+  insitu_camera camera = {sizeof camera, .eye = {0, -90, 62}, .look_at = {0, -11, -7}, .up = {0, 0, 1},
+                          .fov_y_deg = 41};
+  insitu_effects effects = {sizeof effects, INSITU_EFFECT_SHADOWS | INSITU_EFFECT_AMBIENT_OCCLUSION, .ao_samples = 8};
+  insitu_view_desc view_desc = {sizeof view_desc, .camera = &camera, .effects = &effects,
+                                .background = {0.004, 0.004, 0.006, 1}};
   insitu_view view;
   insitu_view_create(context, &view_desc, &view);
-  insitu_image_desc image_desc = {sizeof image_desc, .width = 1024, .height = 576};
+  insitu_image_desc image_desc = {sizeof image_desc, .width = 960, .height = 540};
   insitu_image image;
   insitu_image_create(context, &image_desc, &image);
 

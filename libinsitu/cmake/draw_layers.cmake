@@ -4,7 +4,7 @@
 cmake_minimum_required(VERSION 3.25)
 include("${CMAKE_CURRENT_LIST_DIR}/layers.cmake")
 include("${CMAKE_CURRENT_LIST_DIR}/readme_block.cmake")
-cmake_path(SET root NORMALIZE "${CMAKE_CURRENT_LIST_DIR}/../..")
+get_filename_component(root "${CMAKE_CURRENT_LIST_DIR}/../.." ABSOLUTE)
 scan_layers("${root}")
 
 # All layers that exist, users first, kinds of geometry behind geometry.

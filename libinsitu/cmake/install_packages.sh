@@ -36,12 +36,17 @@ install_missing() {
 }
 
 echo "Installing ${missing[*]}"
-# A fresh image has no package lists, an old one may have lists that name files which are gone: both are cured by one
+# A fresh image has no package lists; an old one may have lists that name files which are gone. Both are cured by one
 # update, and nobody else has to wait for it.
-if ! install_missing; then
+give_up() {
+  echo "apt-get could not install: ${missing[*]}" >&2
+  exit 1
+}
+if ! compgen -G '/var/lib/apt/lists/*_Packages*' > /dev/null; then
+  apt_get update || give_up
+  install_missing || give_up
+elif ! install_missing; then
   echo "Trying again with new package lists"
-  if ! { apt_get update && install_missing; }; then
-    echo "apt-get could not install: ${missing[*]}" >&2
-    exit 1
-  fi
+  apt_get update || give_up
+  install_missing || give_up
 fi

@@ -3,7 +3,7 @@
 #   cmake -DCHECK=ON -P libinsitu/cmake/show_source.cmake    fails when README and file differ
 cmake_minimum_required(VERSION 3.25)
 include("${CMAKE_CURRENT_LIST_DIR}/readme_block.cmake")
-cmake_path(SET root NORMALIZE "${CMAKE_CURRENT_LIST_DIR}/../..")
+get_filename_component(root "${CMAKE_CURRENT_LIST_DIR}/../.." ABSOLUTE)
 file(READ "${root}/mini-apps/hello_spheres.c" source)
 readme_block("${root}/README.md" hello_spheres.c "```c\n${source}```\n" "${CHECK}"
              "cmake -P libinsitu/cmake/show_source.cmake")

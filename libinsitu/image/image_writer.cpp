@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <climits>
-#include <exception>
 #include <memory>
 #include <mutex>
 #include <new>
@@ -203,9 +202,9 @@ WriteResult write_image(const FrameBuffer& frame, const ImageMetadata& metadata,
   try {
     return write_checked(frame, metadata, path);
   } catch (const std::bad_alloc&) {
-    return {INSITU_ERROR_OUT_OF_MEMORY, "no memory left to encode an image", 0};
-  } catch (const std::exception& error) {
-    return {INSITU_ERROR_INTERNAL, error.what(), 0};
+    return {INSITU_ERROR_OUT_OF_MEMORY, "out of memory", 0};  // short enough for a string without memory of its own
+  } catch (...) {
+    return {INSITU_ERROR_INTERNAL, "internal error", 0};
   }
 }
 

@@ -13,7 +13,7 @@ namespace insitu {
 
 struct WriteResult {
   insitu_status status = INSITU_OK;
-  std::string message;      // empty when ok; otherwise one sentence that names the file and the reason
+  std::string message;      // empty when ok; otherwise names the file and the reason (without memory: the reason)
   uint64_t file_bytes = 0;  // size of the written file; 0 when not ok
 };
 

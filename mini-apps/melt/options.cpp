@@ -110,8 +110,9 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
   if (quick) make_quick(app, options);
   options.images = !no_images;
   picture.threads = static_cast<std::uint32_t>(simulation.threads);
-  // Maxwell's distribution of speeds peaks at sqrt(2 T); only one atom in 10,000 is three times as fast.
-  picture.speed_max = 2.5 * std::sqrt(2.0 * simulation.temperature);
+  // Maxwell's distribution of speeds peaks at sqrt(2 T), in the middle of the colour map; one atom in twenty is faster
+  // than twice that and takes the last colour.
+  picture.speed_max = 2.0 * std::sqrt(2.0 * simulation.temperature);
   return std::nullopt;
 }
 

@@ -37,7 +37,9 @@ std::string fitting_colormap(const Attribute& attribute) {
 RadiusChoice vdw_radii(const Attribute& element) {
   RadiusChoice choice;
   choice.per_particle.reserve(element.values.size());
-  for (const double z : element.values) choice.per_particle.push_back(static_cast<float>(vdw_radius(static_cast<int>(z))));
+  for (const double z : element.values) {
+    choice.per_particle.push_back(static_cast<float>(vdw_radius(atomic_number_of(z))));
+  }
   return choice;
 }
 
@@ -52,6 +54,7 @@ RadiusChoice radii_of(const Attribute& attribute) {
 
 ColorChoice choose_color(const Frame& frame, const Options& options) {
   ColorChoice choice;
+  if (frame.count() == 0) return choice;
   choice.colormap = options.colormap;
   const Attribute* attribute = nullptr;
   if (options.color.empty()) {
@@ -75,6 +78,7 @@ ColorChoice choose_color(const Frame& frame, const Options& options) {
 }
 
 RadiusChoice choose_radius(const Frame& frame, const Options& options) {
+  if (frame.count() == 0) return {};
   const std::string& wish = options.radius;
   const Attribute* const element = frame.find("element");
   if (wish.empty()) {
@@ -91,8 +95,9 @@ RadiusChoice choose_radius(const Frame& frame, const Options& options) {
   const Attribute* const attribute = frame.find(wish);
   if (attribute && attribute->components == 1) return radii_of(*attribute);
   if (wish == "vdw") {
-    throw UsageError("--radius vdw: the file names no elements, expected a length, auto or an attribute (--elements "
-                     "names those of the types)");
+    throw UsageError(
+        "--radius vdw: the file names no elements, expected a length, auto or an attribute (--elements "
+        "names those of the types)");
   }
   throw UsageError("--radius " + wish + ": there is no such attribute, expected one of " + frame.attribute_names() +
                    ", or a length, vdw or auto");

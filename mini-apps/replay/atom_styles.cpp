@@ -44,8 +44,8 @@ constexpr StyleText styles[] = {
 };
 
 // The ones to guess, the likelier first where several have as many columns.
-constexpr std::array<const char*, 11> guesses = {"atomic", "molecular", "charge", "full",   "sphere", "electron",
-                                                 "sph",    "dipole",    "mesont", "smd",    "bpm/sphere"};
+constexpr std::array<const char*, 11> guesses = {"atomic", "molecular", "charge", "full", "sphere",    "electron",
+                                                 "sph",    "dipole",    "mesont", "smd",  "bpm/sphere"};
 
 std::vector<std::string> words_of(std::string_view text) {
   std::vector<std::string_view> words;
@@ -65,7 +65,6 @@ std::vector<std::string> hybrid_columns(const std::vector<std::string>& names) {
   }
   return columns;
 }
-
 
 bool row_fits(const TextRow& row, const AtomStyle& style, std::int64_t type_count) {
   if (row.size() != style.columns.size() + (style.image_flags ? 3 : 0)) return false;
@@ -120,9 +119,9 @@ AtomStyle guess_atom_style(const std::vector<TextRow>& rows, std::int64_t type_c
 }
 
 bool is_whole_column(std::string_view name) {
-  constexpr std::array<std::string_view, 12> whole = {"id",           "mol",      "type",         "bodyflag",
-                                                      "lineflag",     "triangleflag", "ellipsoidflag", "spin",
-                                                      "bond1",        "bond2",    "buckled",      "template"};
+  constexpr std::array<std::string_view, 12> whole = {"id",       "mol",          "type",          "bodyflag",
+                                                      "lineflag", "triangleflag", "ellipsoidflag", "spin",
+                                                      "bond1",    "bond2",        "buckled",       "template"};
   return std::find(whole.begin(), whole.end(), name) != whole.end();
 }
 

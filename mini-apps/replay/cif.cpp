@@ -1,6 +1,8 @@
 // mmCIF, the models of a macromolecule, and CIF of crystals.
 #include <gemmi/mmcif.hpp>
 
+#include <exception>
+#include <new>
 #include <utility>
 
 #include "cif_block.h"
@@ -54,7 +56,9 @@ class CifReader : public FrameReader {
         crystal_ = crystal_frame(block);
         derive_attributes(*crystal_);
       }
-    } catch (const std::runtime_error& error) {
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const std::exception& error) {  // gemmi throws what its helpers throw
       throw InputError(path_, static_cast<std::size_t>(line), error.what());
     }
     if (sites && structure_.models.empty()) {

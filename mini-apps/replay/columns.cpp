@@ -65,8 +65,7 @@ void ColumnReader::drop_duplicates() {
   std::vector<Claim> claims;
   const auto free_for = [&claims](const std::string& name, const Column& column) {
     return std::none_of(claims.begin(), claims.end(), [&](const Claim& claim) {
-      return claim.name == name &&
-             (claim.component == column.component || claim.components != column.components);
+      return claim.name == name && (claim.component == column.component || claim.components != column.components);
     });
   };
   for (Column& column : columns_) {

@@ -44,8 +44,7 @@ std::vector<gemmi::Op> symmetry_operations(gemmi::cif::Block& block, const gemmi
   }
   for (const char* tag : {"_symmetry_space_group_name_H-M", "_space_group_name_H-M_alt"}) {
     for (const std::string& text : block.find_values(tag)) {
-      const gemmi::SpaceGroup* const group =
-          gemmi::find_spacegroup_by_name(as_string(text), cell.alpha, cell.gamma);
+      const gemmi::SpaceGroup* const group = gemmi::find_spacegroup_by_name(as_string(text), cell.alpha, cell.gamma);
       if (!group) continue;
       for (const gemmi::Op& operation : group->operations()) operations.push_back(operation);
       return operations;

@@ -1,9 +1,9 @@
 // Constants of the chemical elements by atomic number; entry 0 stands for an unknown one.
 //
 // Masses: standard atomic weights, IUPAC 2021, shortened; the longest-lived isotope where there is none.
-// Van der Waals radii in Angstrom: main groups from Bondi (J. Phys. Chem. 68, 441, 1964) with the gaps filled by Mantina
-// et al. (J. Phys. Chem. A 113, 5806, 2009); d and f blocks from Alvarez (Dalton Trans. 42, 8617, 2013), since Bondi's
-// values for metals are mostly missing. 2.0 where none of them has a value.
+// Van der Waals radii in Angstrom: main groups from Bondi (J. Phys. Chem. 68, 441, 1964) with the gaps filled by
+// Mantina et al. (J. Phys. Chem. A 113, 5806, 2009); d and f blocks from Alvarez (Dalton Trans. 42, 8617, 2013), since
+// Bondi's values for metals are mostly missing. 2.0 where none of them has a value.
 #pragma once
 
 namespace replay {

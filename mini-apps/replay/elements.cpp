@@ -40,6 +40,8 @@ const char* element_symbol(int atomic_number) {
   return is_element(atomic_number) ? element_table[atomic_number].symbol : "?";
 }
 
+int atomic_number_of(double value) { return value >= 1.0 && value < element_count + 1.0 ? static_cast<int>(value) : 0; }
+
 double vdw_radius(int atomic_number) { return element_table[is_element(atomic_number) ? atomic_number : 0].vdw_radius; }
 
 std::vector<int> elements_of_masses(const std::vector<double>& masses) {

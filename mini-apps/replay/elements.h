@@ -12,6 +12,8 @@ constexpr int element_count = 118;
 int element_of_symbol(std::string_view symbol);
 // "Na" for 11; "?" for numbers outside of 1 to 118.
 const char* element_symbol(int atomic_number);
+// The atomic number that a value of an attribute stands for: 0 for all that is none.
+int atomic_number_of(double value);
 // Van der Waals radius in Angstrom; a middling one for 0 and for elements without a known radius.
 double vdw_radius(int atomic_number);
 

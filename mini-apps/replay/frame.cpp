@@ -79,7 +79,7 @@ void assign_elements(Frame& frame, const std::vector<int>& atomic_number) {
   Attribute element{"element", 1, true, type->values};
   for (double& value : element.values) {
     const bool inside = value >= 1.0 && value <= static_cast<double>(atomic_number.size());
-    value = inside ? atomic_number[static_cast<std::size_t>(value) - 1] : 0.0;
+    value = inside ? static_cast<double>(atomic_number[static_cast<std::size_t>(value) - 1]) : 0.0;
   }
   frame.remove("element");
   frame.attributes.push_back(std::move(element));

@@ -44,7 +44,8 @@ void for_each_part(const std::string& pattern, Literal literal, OnKey on_key) {
       key = parse_key(std::string_view(pattern).substr(i + 1, end - i - 1));
     }
     if (!key) {
-      throw UsageError("--out " + pattern + ": " + quoted(pattern.substr(i, end == std::string::npos ? 1 : end - i + 1)) +
+      throw UsageError("--out " + pattern + ": " +
+                       quoted(pattern.substr(i, end == std::string::npos ? 1 : end - i + 1)) +
                        " is no key, expected {step}, {step:N}, {angle} or {angle:N} with N digits");
     }
     on_key(*key);
@@ -54,7 +55,8 @@ void for_each_part(const std::string& pattern, Literal literal, OnKey on_key) {
 
 bool has_key(const std::string& pattern, std::string_view name) {
   bool found = false;
-  for_each_part(pattern, [](char) {}, [&](const Key& key) { found = found || key.name == name; });
+  for_each_part(
+      pattern, [](char) {}, [&](const Key& key) { found = found || key.name == name; });
   return found;
 }
 

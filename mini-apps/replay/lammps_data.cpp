@@ -163,8 +163,8 @@ class DataReader : public FrameReader {
     choose_style();
     ColumnReader columns(columns_of(style_));
     columns.begin(frame);
-    const auto type_place = static_cast<std::size_t>(
-        std::find(style_.columns.begin(), style_.columns.end(), "type") - style_.columns.begin());
+    const auto type_place = static_cast<std::size_t>(std::find(style_.columns.begin(), style_.columns.end(), "type") -
+                                                     style_.columns.begin());
     for (std::uint64_t i = 0; i < header_.atoms; ++i) {
       next_row("Atoms", i, header_.atoms);
       const std::size_t size = style_.columns.size();
@@ -182,11 +182,11 @@ class DataReader : public FrameReader {
     if (!atoms_read_) lines_.fail(std::string("\"") + section + "\" before \"Atoms\"");
     if (place_of_id_.empty()) {
       const std::vector<double>& ids = frame.find("id")->values;
-      for (std::size_t i = 0; i < ids.size(); ++i) place_of_id_[static_cast<std::int64_t>(ids[i])] = i;
+      for (std::size_t i = 0; i < ids.size(); ++i) place_of_id_[ids[i]] = i;
     }
     std::int64_t id = 0;
     if (!parse_whole(row_[0], id)) lines_.fail(quoted(row_[0]) + ", expected the id of an atom");
-    const auto found = place_of_id_.find(id);
+    const auto found = place_of_id_.find(static_cast<double>(id));
     if (found == place_of_id_.end()) lines_.fail("no atom has the id " + std::to_string(id));
     return found->second;
   }
@@ -218,7 +218,8 @@ class DataReader : public FrameReader {
     frame.attributes.push_back(std::move(radius));
   }
 
-  // By the masses of the types. In an electron force field the particles of spin +-1 are electrons, whatever their type.
+  // By the masses of the types. In an electron force field the particles of spin +-1 are electrons, whatever their
+  // type.
   void add_elements(Frame& frame) const {
     if (masses_.empty() || static_cast<std::int64_t>(masses_.size()) != header_.types) return;
     std::vector<double> masses;
@@ -239,7 +240,7 @@ class DataReader : public FrameReader {
   Words row_;
   std::map<std::string, std::string, std::less<>> type_labels_;
   std::map<std::int64_t, double> masses_;
-  std::unordered_map<std::int64_t, std::size_t> place_of_id_;
+  std::unordered_map<double, std::size_t> place_of_id_;
   bool atoms_read_ = false;
   bool done_ = false;
 };

@@ -43,8 +43,8 @@ int hex_digit(char c) {
 }
 
 constexpr std::pair<std::string_view, std::string_view> color_names[] = {
-    {"white", "#ffffff"},  {"black", "#000000"}, {"grey", "#808080"}, {"gray", "#808080"},
-    {"red", "#c03028"},    {"green", "#2f8f3f"}, {"blue", "#3060c0"}, {"yellow", "#e8c030"},
+    {"white", "#ffffff"},  {"black", "#000000"}, {"grey", "#808080"},  {"gray", "#808080"},
+    {"red", "#c03028"},    {"green", "#2f8f3f"}, {"blue", "#3060c0"},  {"yellow", "#e8c030"},
     {"orange", "#e08020"}, {"cyan", "#30a8b8"},  {"violet", "#8050b0"}};
 
 }  // namespace
@@ -63,7 +63,8 @@ void parse_camera(const std::string& text, CameraOptions& camera) {
     const std::string number_text = equal == std::string::npos ? part : part.substr(equal + 1);
     double number = 0.0;
     if (keys.empty()) throw wrong(quoted(part) + " has no key");
-    if (!parse_number(number_text, number) || !std::isfinite(number)) throw wrong(quoted(number_text) + " is no number");
+    if (!parse_number(number_text, number) || !std::isfinite(number))
+      throw wrong(quoted(number_text) + " is no number");
     keys.back().second.push_back(number);
   }
   for (const auto& [key, numbers] : keys) {
@@ -90,10 +91,10 @@ void parse_view(const std::string& text, CameraOptions& camera) {
     Vector from;
     Vector up;
   };
-  constexpr Named named[] = {
-      {"x", {1, 0, 0}, {0, 0, 1}},   {"-x", {-1, 0, 0}, {0, 0, 1}}, {"y", {0, 1, 0}, {0, 0, 1}},
-      {"-y", {0, -1, 0}, {0, 0, 1}}, {"z", {0, 0, 1}, {0, 1, 0}},   {"-z", {0, 0, -1}, {0, 1, 0}},
-      {"iso", {1, -1.4, 1}, {0, 0, 1}}};
+  constexpr Named named[] = {{"x", {1, 0, 0}, {0, 0, 1}},     {"-x", {-1, 0, 0}, {0, 0, 1}},
+                             {"y", {0, 1, 0}, {0, 0, 1}},     {"-y", {0, -1, 0}, {0, 0, 1}},
+                             {"z", {0, 0, 1}, {0, 1, 0}},     {"-z", {0, 0, -1}, {0, 1, 0}},
+                             {"iso", {1, -1.4, 1}, {0, 0, 1}}};
   Vector up = {0, 0, 1};
   const auto found = std::find_if(std::begin(named), std::end(named), [&](const Named& n) { return text == n.name; });
   if (found != std::end(named)) {
@@ -120,7 +121,8 @@ std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& text) {
   const std::vector<std::string> parts = split_at(text, 'x');
   std::int64_t size[2] = {};
   bool good = parts.size() == 2;
-  for (std::size_t i = 0; good && i < 2; ++i) good = parse_whole(parts[i], size[i]) && size[i] > 0 && size[i] <= largest;
+  for (std::size_t i = 0; good && i < 2; ++i)
+    good = parse_whole(parts[i], size[i]) && size[i] > 0 && size[i] <= largest;
   if (!good) {
     throw UsageError("--size " + text + ": expected WIDTHxHEIGHT in pixels, such as 1920x1080, at most " +
                      std::to_string(largest) + " each");

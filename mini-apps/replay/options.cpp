@@ -1,6 +1,6 @@
 #include "options.h"
 
-#include <insitu/insitu.h>
+#include "insitu/insitu.h"
 
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -9,6 +9,7 @@
 
 #include "atom_styles.h"
 #include "image_name.h"
+#include "numbers.h"
 #include "option_values.h"
 
 namespace replay {
@@ -43,66 +44,105 @@ CLI::Validator one_of(const Map& names) {
   return CLI::IsMember(keys);
 }
 
+// CLI11 breaks no lines by itself; it indents what follows a line break.
+std::string wrapped(std::string_view text) {
+  constexpr std::size_t width = 88;
+  std::string out;
+  std::size_t line = 0;
+  Words words;
+  split_words(text, words);
+  for (const std::string_view word : words) {
+    if (line > 0) {
+      const bool fits = line + 1 + word.size() <= width;
+      out += fits ? ' ' : '\n';
+      line = fits ? line + 1 : 0;
+    }
+    out += word;
+    line += word.size();
+  }
+  return out;
+}
+
 void add_reading(CLI::App& app, Options& options, Texts& texts) {
   const char* const group = "Reading";
   app.add_option("FILE", options.files,
-                 "Files to play, one after the other: LAMMPS data and text dump, XYZ and extended XYZ, PDB, mmCIF and "
-                 "CIF of crystals, each also as .gz")
+                 wrapped("Files to play, one after the other: LAMMPS data and text dump, XYZ and extended XYZ, PDB, "
+                         "mmCIF and CIF of crystals, each also as .gz"))
       ->required();
-  app.add_option("--format", texts.format, "What the files are, when neither content nor ending tells")
+  app.add_option("--format", texts.format, wrapped("What the files are, when neither content nor ending tells"))
+      ->type_name("FORMAT")
       ->check(one_of(format_names))
       ->group(group);
   app.add_option("--atom-style", options.read.atom_style,
-                 "Atom style of LAMMPS data files, such as full or \"hybrid sphere charge\"")
+                 wrapped("Atom style of LAMMPS data files, such as full or \"hybrid sphere charge\""))
+      ->type_name("STYLE")
       ->group(group);
-  app.add_option("--elements", texts.elements, "Elements of type 1, 2, ..., such as O,H")->group(group);
-  app.add_flag("--no-hetatm", texts.no_hetatm, "PDB and mmCIF: without ligands, ions and water")->group(group);
-  app.add_option("--steps", texts.steps, "A:B:K plays the steps A, A+K, ... below B, counted from 0 over all files")
+  app.add_option("--elements", texts.elements, wrapped("Elements of type 1, 2, ..., such as O,H"))
+      ->type_name("SYMBOLS")
       ->group(group);
-  app.add_flag("--list", options.list, "Print what is in the files (counts, box, attributes), and draw nothing")
+  app.add_flag("--no-hetatm", texts.no_hetatm, wrapped("PDB and mmCIF: without ligands, ions and water"))->group(group);
+  app.add_option("--steps", texts.steps,
+                 wrapped("A:B:K plays the steps A, A+K, ... below B, counted from 0 over all files"))
+      ->type_name("A:B:K")
+      ->group(group);
+  app.add_flag("--list", options.list,
+               wrapped("Print what is in the files (counts, box, attributes), and draw nothing"))
       ->group(group);
 }
 
 void add_looks(CLI::App& app, Options& options, Texts& texts) {
   const char* const group = "Looks";
   app.add_option("--color", options.color,
-                 "Attribute that gives the colour (v.x: a component), or uniform, or a colour such as #4080c0; by "
-                 "default the element, else the type")
+                 wrapped("Attribute that gives the colour (v.x: a component), or uniform, or a colour such as #4080c0; "
+                         "by default the element, else the type"))
+      ->type_name("NAME")
       ->group(group);
-  app.add_option("--colormap", options.colormap, "Colours of the values; by default one that fits the attribute")
+  app.add_option("--colormap", options.colormap,
+                 wrapped("Colours of the values; by default one that fits the attribute"))
+      ->type_name("MAP")
       ->check(CLI::IsMember({"viridis", "inferno", "coolwarm", "categorical", "elements"}))
       ->group(group);
-  app.add_option("--range", texts.range, "Values at the two ends of the colour map; by default those of the step")
+  app.add_option("--range", texts.range,
+                 wrapped("Values at the two ends of the colour map; by default those of the step"))
       ->expected(2)
       ->type_name("LO HI")
       ->group(group);
   app.add_option("--radius", options.radius,
-                 "A length, vdw (by element), auto (by the spacing), or the attribute to take; by default the file's "
-                 "radius, else vdw, else auto")
+                 wrapped("A length, vdw (by element), auto (by the spacing), or the attribute to take; by default the "
+                         "file's radius, else vdw, else auto"))
+      ->type_name("R")
       ->group(group);
-  app.add_option("--radius-scale", options.radius_scale, "Factor on every radius")
+  app.add_option("--radius-scale", options.radius_scale, wrapped("Factor on every radius"))
+      ->type_name("F")
       ->check(CLI::PositiveNumber)
       ->group(group);
-  app.add_option("--ao", options.ao_samples, "Ambient occlusion with N rays per hit; 0 = none")
+  app.add_option("--ao", options.ao_samples, wrapped("Ambient occlusion with N rays per hit; 0 = none"))
       ->check(CLI::Range(0, 4096))
       ->type_name("N")
       ->group(group);
-  app.add_option("--ao-radius", options.ao_radius, "How far occlusion reaches; by default a tenth of the scene")
+  app.add_option("--ao-radius", options.ao_radius,
+                 wrapped("How far occlusion reaches; by default a tenth of the scene"))
+      ->type_name("R")
       ->check(CLI::PositiveNumber)
       ->group(group);
-  app.add_flag("--shadows", options.shadows, "Cast shadows")->group(group);
-  app.add_option("--background", texts.background, "#rrggbb, a colour name, or transparent; white by default")
+  app.add_flag("--shadows", options.shadows, wrapped("Cast shadows"))->group(group);
+  app.add_option("--background", texts.background, wrapped("#rrggbb, a colour name, or transparent; white by default"))
+      ->type_name("COLOR")
       ->group(group);
 }
 
 void add_camera(CLI::App& app, Options& options, Texts& texts) {
   const char* const group = "Camera";
-  app.add_option("--camera", texts.camera, "fit (default), or eye=X,Y,Z,at=X,Y,Z,up=X,Y,Z,fov=DEGREES,height=H")
+  app.add_option("--camera", texts.camera,
+                 wrapped("fit (default), or eye=X,Y,Z,at=X,Y,Z,up=X,Y,Z,fov=DEGREES,height=H"))
+      ->type_name("SPEC")
       ->group(group);
-  app.add_option("--view", texts.view, "Where the fitted camera stands: x, -x, y, -y, z (default), -z, iso, or X,Y,Z")
+  app.add_option("--view", texts.view,
+                 wrapped("Where the fitted camera stands: x, -x, y, -y, z (default), -z, iso, or X,Y,Z"))
+      ->type_name("FROM")
       ->group(group);
-  app.add_flag("--orthographic", options.camera.orthographic, "No perspective")->group(group);
-  app.add_option("--turntable", options.camera.turntable, "N pictures of each step, all around the data")
+  app.add_flag("--orthographic", options.camera.orthographic, wrapped("No perspective"))->group(group);
+  app.add_option("--turntable", options.camera.turntable, wrapped("N pictures of each step, all around the data"))
       ->check(CLI::Range(1, 36000))
       ->type_name("N")
       ->group(group);
@@ -111,23 +151,28 @@ void add_camera(CLI::App& app, Options& options, Texts& texts) {
 void add_output(CLI::App& app, Options& options, Texts& texts) {
   const char* const group = "Output";
   app.add_option("--out", options.out,
-                 "Image files, .png or .exr (with depth, position, normal and item); {step}, {step:6} and {angle} are "
-                 "filled in; replay_{step}.png by default")
+                 wrapped("Image files, .png or .exr (with depth, position, normal and item); {step}, {step:6} and "
+                         "{angle} are filled in; replay_{step}.png by default"))
+      ->type_name("PATTERN")
       ->group(group);
-  app.add_option("--size", texts.size, "Pixels; 1024x768 by default")->type_name("WxH")->group(group);
-  app.add_option("--spp", options.samples, "Samples per pixel; 4 by default")
+  app.add_option("--size", texts.size, wrapped("Pixels; 1024x768 by default"))->type_name("WxH")->group(group);
+  app.add_option("--spp", options.samples, wrapped("Samples per pixel; 4 by default"))
       ->check(CLI::Range(1, 65536))
       ->type_name("N")
       ->group(group);
-  app.add_option("--report", options.report, "Append one JSON line per step to this file")->group(group);
-  app.add_option("--threads", options.threads, "At most so many threads; 0 = all of the machine")
+  app.add_option("--report", options.report, wrapped("Append one JSON line per step to this file"))
+      ->type_name("FILE")
+      ->group(group);
+  app.add_option("--threads", options.threads, wrapped("At most so many threads; 0 = all of the machine"))
       ->check(CLI::Range(0, 65536))
       ->type_name("N")
       ->group(group);
-  app.add_option("--order", texts.order, "What may happen to the order of the particles: index, permute or copy")
+  app.add_option("--order", texts.order,
+                 wrapped("What may happen to the order of the particles: index, permute or copy"))
+      ->type_name("ORDER")
       ->check(one_of(order_names))
       ->group(group);
-  app.add_flag("--quiet", options.quiet, "Print errors only")->group(group);
+  app.add_flag("--quiet", options.quiet, wrapped("Print errors only"))->group(group);
 }
 
 void convert(const Texts& texts, Options& options) {

@@ -35,9 +35,7 @@ struct StepSelection {
   std::optional<std::uint64_t> end;
   std::uint64_t stride = 1;
 
-  bool contains(std::uint64_t step) const {
-    return step >= first && !is_behind(step) && (step - first) % stride == 0;
-  }
+  bool contains(std::uint64_t step) const { return step >= first && !is_behind(step) && (step - first) % stride == 0; }
   bool is_behind(std::uint64_t step) const { return end && step >= *end; }
 };
 

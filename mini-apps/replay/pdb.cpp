@@ -1,7 +1,8 @@
 // PDB files. The records of one model at a time go to gemmi, so that a long trajectory does not fill the memory.
 #include <gemmi/pdb.hpp>
 
-#include <stdexcept>
+#include <exception>
+#include <new>
 
 #include "input_error.h"
 #include "line_reader.h"
@@ -90,7 +91,9 @@ class PdbReader : public FrameReader {
   gemmi::Structure parse() const {
     try {
       return gemmi::read_pdb_from_memory(text_.data(), text_.size(), lines_.path());
-    } catch (const std::runtime_error& error) {
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const std::exception& error) {
       lines_.fail(error.what());
     }
   }

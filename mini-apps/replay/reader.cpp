@@ -54,10 +54,11 @@ bool ends_with(std::string_view text, std::string_view ending) {
 std::optional<Format> format_of_ending(std::string_view path) {
   if (ends_with(path, ".gz")) path.remove_suffix(3);
   constexpr std::pair<std::string_view, Format> endings[] = {
-      {".data", Format::lammps_data},       {".lmp", Format::lammps_data},  {".dump", Format::lammps_dump},
-      {".lammpstrj", Format::lammps_dump},  {".xyz", Format::xyz},          {".extxyz", Format::xyz},
-      {".pdb", Format::pdb},                {".ent", Format::pdb},          {".cif", Format::cif},
-      {".mmcif", Format::cif},
+      {".data", Format::lammps_data}, {".lmp", Format::lammps_data},
+      {".dump", Format::lammps_dump}, {".lammpstrj", Format::lammps_dump},
+      {".xyz", Format::xyz},          {".extxyz", Format::xyz},
+      {".pdb", Format::pdb},          {".ent", Format::pdb},
+      {".cif", Format::cif},          {".mmcif", Format::cif},
   };
   for (const auto& [ending, format] : endings) {
     if (ends_with(path, ending)) return format;
@@ -86,8 +87,9 @@ const char* format_title(Format format) {
 Format detect_format(const std::string& path) {
   if (const auto format = format_of_content(path)) return *format;
   if (const auto format = format_of_ending(path)) return *format;
-  throw InputError(path, 0, "the format is not known, expected a LAMMPS data or dump file, XYZ, PDB or mmCIF "
-                            "(--format says which one it is)");
+  throw InputError(path, 0,
+                   "the format is not known, expected a LAMMPS data or dump file, XYZ, PDB or mmCIF "
+                   "(--format says which one it is)");
 }
 
 std::unique_ptr<FrameReader> open_reader(const std::string& path, const ReadOptions& options) {

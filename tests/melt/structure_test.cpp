@@ -104,11 +104,11 @@ TEST(Liquid, EnergyAndPressureOfTheFullPotential) {
     desc.density = point.density;
     desc.cutoff = cutoff;
     Simulation simulation = liquid(864, 300, desc);
-    for (int i = 0; i < 500; ++i) simulation.step_with_thermostat(0.85, 0.02);
+    for (int i = 0; i < 300; ++i) simulation.step_with_thermostat(0.85, 0.02);
     double energy = 0.0;
     double pressure = 0.0;
     double temperature = 0.0;
-    constexpr int samples = 60;
+    constexpr int samples = 40;
     for (int sample = 0; sample < samples; ++sample) {
       for (int i = 0; i < 20; ++i) simulation.step_with_thermostat(0.85, 0.5);
       const std::span<const Particle> particles = simulation.particles();

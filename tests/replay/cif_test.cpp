@@ -38,8 +38,9 @@ _atom_site.pdbx_PDB_model_num
 
 TEST(Cif, ReadsMmcif) {
   Folder folder;
-  const auto frames = read_all(folder.write("a.cif", columns + "ATOM 1 N N . ALA A 1 1.5 2 -3 1.0 20.5 7 X 1\n"
-                                                               "HETATM 2 C \"C5'\" . LIG B . 4 5 6 0.5 10 301 Y 1 #\n"));
+  const auto frames =
+      read_all(folder.write("a.cif", columns + "ATOM 1 N N . ALA A 1 1.5 2 -3 1.0 20.5 7 X 1\n"
+                                               "HETATM 2 C \"C5'\" . LIG B . 4 5 6 0.5 10 301 Y 1 #\n"));
   ASSERT_EQ(frames.size(), 1u);
   EXPECT_THAT(frames[0].position, ElementsAre(1.5, 2, -3, 4, 5, 6));
   EXPECT_THAT(values(frames[0], "element"), ElementsAre(7, 6));
@@ -113,6 +114,7 @@ TEST(Cif, ErrorsNameTheLine) {
   EXPECT_EQ(error(columns + "ATOM 1 N N . ALA A 1 1 2 3 1 20 7 X\n"),
             "a.cif:25: the loop that starts in line 8 ends inside of a row, expected 16 values in each");
   EXPECT_THAT(error(columns), HasSubstr("a.cif:8: the loop of atoms has no rows"));
+  EXPECT_EQ(error(columns + "ATOM 1 N N . ALA A 1 1 2 3 1 20 7_1 X 1\n"), "a.cif:8: not an integer: 7_");
   EXPECT_EQ(error("data_x\nloop_\n1 2 3\n"),
             "a.cif:3: \"loop_\" without tags, expected names such as \"_atom_site.Cartn_x\"");
   EXPECT_EQ(error("data_x\n_a 'not closed\n"), "a.cif:2: a value is not closed, expected '");

@@ -29,7 +29,8 @@ TEST(Format, IsFoundByTheEndingWhereTheContentSaysNothing) {
 TEST(Format, IsAskedForOtherwise) {
   Folder folder;
   EXPECT_THAT(error_of(folder.write("a.txt", "hello\n")), HasSubstr("a.txt: the format is not known"));
-  EXPECT_THAT(error_of(folder.write("b.xyz", std::string_view("\x89PNG\0\0", 6))), HasSubstr("b.xyz:1: the line holds binary"));
+  EXPECT_THAT(error_of(folder.write("b.xyz", std::string_view("\x89PNG\0\0", 6))),
+              HasSubstr("b.xyz:1: the line holds binary"));
 }
 
 TEST(Format, CanBeForced) {

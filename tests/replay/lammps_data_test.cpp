@@ -98,8 +98,7 @@ TEST(LammpsData, HybridStylesAppendTheirColumns) {
 
 TEST(LammpsData, DiametersBecomeRadii) {
   Folder folder;
-  const auto frames =
-      read_all(folder.write("a.data", data_file("Atoms # sphere\n\n1 1 3 1 0 0 0\n2 1 0.5 1 0 0 1\n")));
+  const auto frames = read_all(folder.write("a.data", data_file("Atoms # sphere\n\n1 1 3 1 0 0 0\n2 1 0.5 1 0 0 1\n")));
   EXPECT_THAT(values(frames[0], "radius"), ElementsAre(1.5, 0.25));
 }
 
@@ -130,10 +129,10 @@ TEST(LammpsData, VelocitiesFollowTheIds) {
 
 TEST(LammpsData, EllipsoidsBecomeSpheresOfTheirVolume) {
   Folder folder;
-  const auto frames =
-      read_all(folder.write("a.data", "title\n\n2 atoms\n1 ellipsoids\n1 atom types\n\n"
-                                      "Atoms # ellipsoid\n\n1 1 1 1.0 0 0 0\n2 1 0 1.0 0 0 1\n\n"
-                                      "Ellipsoids\n\n1 1 2 4 1 0 0 0\n"));
+  const auto frames = read_all(folder.write("a.data",
+                                            "title\n\n2 atoms\n1 ellipsoids\n1 atom types\n\n"
+                                            "Atoms # ellipsoid\n\n1 1 1 1.0 0 0 0\n2 1 0 1.0 0 0 1\n\n"
+                                            "Ellipsoids\n\n1 1 2 4 1 0 0 0\n"));
   EXPECT_THAT(values(frames[0], "radius"), ElementsAre(1, 0));
   EXPECT_FALSE(frames[0].box.known);
 }
@@ -155,24 +154,23 @@ TEST(LammpsData, NotANumberIsPassedOn) {
 
 TEST(LammpsData, ReadsWindowsLineEndsAndNoAtoms) {
   Folder folder;
-  EXPECT_EQ(read_all(folder.write("a.data", "t\r\n\r\n1 atoms\r\n1 atom types\r\n\r\nAtoms\r\n\r\n1 1 0 0 0\r\n"))[0].count(),
-            1u);
+  EXPECT_EQ(
+      read_all(folder.write("a.data", "t\r\n\r\n1 atoms\r\n1 atom types\r\n\r\nAtoms\r\n\r\n1 1 0 0 0\r\n"))[0].count(),
+      1u);
   EXPECT_EQ(read_all(folder.write("b.data", "t\n\n0 atoms\n"))[0].count(), 0u);
 }
 
 TEST(LammpsData, ErrorsNameTheLine) {
   Folder folder;
   const auto error = [&](const std::string& sections) { return error_of(folder.write("a.data", data_file(sections))); };
-  EXPECT_EQ(error("Atoms # atomic\n\n1 1 0 0 0\n"),
-            "a.data:11: the file ends here, expected row 2 of 2 of \"Atoms\"");
+  EXPECT_EQ(error("Atoms # atomic\n\n1 1 0 0 0\n"), "a.data:11: the file ends here, expected row 2 of 2 of \"Atoms\"");
   EXPECT_EQ(error("Atoms # atomic\n\n1 1 0 0 0\n\nVelocities\n\n"),
             "a.data:13: \"Velocities\", expected row 2 of 2 of \"Atoms\"");
   EXPECT_EQ(error("Atoms # atomic\n\n1 1 0 abc 0\n2 1 0 0 0\n"),
             "a.data:11: \"abc\" in column \"y\", expected a number");
   EXPECT_EQ(error("Atoms # atomic\n\n1 1 0 0 0\n2 1 0 0\n"),
             "a.data:12: 4 columns, expected 5 or 8 for atom style atomic");
-  EXPECT_EQ(error("Atoms # atomic\n\n1 3 0 0 0\n2 1 0 0 0\n"),
-            "a.data:11: type 3, but the header says 2 atom types");
+  EXPECT_EQ(error("Atoms # atomic\n\n1 3 0 0 0\n2 1 0 0 0\n"), "a.data:11: type 3, but the header says 2 atom types");
   EXPECT_EQ(error("Atoms # atomic\n\n1.5 1 0 0 0\n2 1 0 0 0\n"),
             "a.data:11: \"1.5\" in column \"id\", expected a whole number");
   EXPECT_EQ(error("Atoms # atomic\n\n1 1 0 0 0\n2 1 0 0 0\n\nVelocities\n\n1 0 0 0\n9 0 0 0\n"),

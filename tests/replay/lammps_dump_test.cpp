@@ -18,10 +18,10 @@ const std::string straight = "pp pp pp\n0 10\n-10 10\n5 10";
 
 TEST(LammpsDump, ReadsStepsOfChangingOrderAndCount) {
   Folder folder;
-  const auto frames = read_all(folder.write("a.dump", step(0, "2", straight, "id type x y z\n1 1 1 2 3\n2 2 4 5 6\n") +
-                                                          step(100, "3", straight,
-                                                               "id type x y z\n3 1 7 8 9\n2 2 4 5 6\n1 1 1 2 3\n") +
-                                                          step(200, "0", straight, "id type x y z\n")));
+  const auto frames =
+      read_all(folder.write("a.dump", step(0, "2", straight, "id type x y z\n1 1 1 2 3\n2 2 4 5 6\n") +
+                                          step(100, "3", straight, "id type x y z\n3 1 7 8 9\n2 2 4 5 6\n1 1 1 2 3\n") +
+                                          step(200, "0", straight, "id type x y z\n")));
   ASSERT_EQ(frames.size(), 3u);
   EXPECT_EQ(frames[0].step, 0u);
   EXPECT_THAT(frames[0].position, ElementsAre(1, 2, 3, 4, 5, 6));
@@ -59,8 +59,8 @@ TEST(LammpsDump, ScaledPositionsFollowATiltedBox) {
 
 TEST(LammpsDump, ReadsAGeneralTriclinicBox) {
   Folder folder;
-  const auto frames = read_all(folder.write(
-      "a.dump", step(0, "1", "abc origin pp pp pp\n1 2 3 -1\n4 5 6 -2\n7 8 10 -3", "x y z\n0 0 0\n")));
+  const auto frames = read_all(
+      folder.write("a.dump", step(0, "1", "abc origin pp pp pp\n1 2 3 -1\n4 5 6 -2\n7 8 10 -3", "x y z\n0 0 0\n")));
   EXPECT_THAT(frames[0].box.edge[1], ElementsAre(4, 5, 6));
   EXPECT_THAT(frames[0].box.origin, ElementsAre(-1, -2, -3));
 }
@@ -89,8 +89,8 @@ TEST(LammpsDump, TypesMayBeNames) {
 
 TEST(LammpsDump, ColumnsMayChangeAndRepeat) {
   Folder folder;
-  const auto frames = read_all(folder.write("a.dump", step(0, "1", straight, "x y z q q\n0 0 0 1 2\n") +
-                                                          step(1, "1", straight, "x y z m\n0 0 0 5\n")));
+  const auto frames = read_all(folder.write(
+      "a.dump", step(0, "1", straight, "x y z q q\n0 0 0 1 2\n") + step(1, "1", straight, "x y z m\n0 0 0 5\n")));
   EXPECT_THAT(values(frames[0], "q"), ElementsAre(1));
   EXPECT_THAT(values(frames[1], "m"), ElementsAre(5));
   EXPECT_EQ(frames[1].find("q"), nullptr);
@@ -98,8 +98,8 @@ TEST(LammpsDump, ColumnsMayChangeAndRepeat) {
 
 TEST(LammpsDump, ReadsUnitsAndTime) {
   Folder folder;
-  const auto frames = read_all(folder.write(
-      "a.dump", "ITEM: UNITS\nlj\nITEM: TIME\n0.25\n" + step(5, "1", straight, "x y z\n0 0 0\n")));
+  const auto frames = read_all(
+      folder.write("a.dump", "ITEM: UNITS\nlj\nITEM: TIME\n0.25\n" + step(5, "1", straight, "x y z\n0 0 0\n")));
   EXPECT_EQ(frames[0].time, 0.25);
 }
 

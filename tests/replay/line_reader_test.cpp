@@ -39,7 +39,10 @@ TEST(LineReader, CutsLineEndsOfUnixAndWindows) {
 
 TEST(LineReader, PassesOverAByteOrderMark) {
   Folder folder;
-  EXPECT_THAT(lines_of(folder.write("a", "\xEF\xBB\xBF" "3\n")), ElementsAre("3"));
+  EXPECT_THAT(lines_of(folder.write("a",
+                                    "\xEF\xBB\xBF"
+                                    "3\n")),
+              ElementsAre("3"));
 }
 
 TEST(LineReader, ReadsCompressedFiles) {
@@ -107,7 +110,8 @@ TEST(Numbers, AreReadWhole) {
   EXPECT_EQ(value, std::numeric_limits<double>::infinity());
   EXPECT_TRUE(parse_number("1e-400", value));
   EXPECT_EQ(value, 0.0);
-  for (const char* text : {"", "+", "+-1", "1.0x", "abc", "1,5", "--1"}) EXPECT_FALSE(parse_number(text, value)) << text;
+  for (const char* text : {"", "+", "+-1", "1.0x", "abc", "1,5", "--1"})
+    EXPECT_FALSE(parse_number(text, value)) << text;
   std::int64_t whole = 0;
   EXPECT_TRUE(parse_whole("-12", whole));
   EXPECT_EQ(whole, -12);

@@ -16,13 +16,13 @@ using ::testing::Pointwise;
 std::string atom(const char* record, int serial, const char* name, char location, const char* residue, char chain,
                  int number, double x, const char* element) {
   char line[100];
-  std::snprintf(line, sizeof line, "%-6s%5d %-4s%c%3s %c%4d    %8.3f%8.3f%8.3f%6.2f%6.2f          %2s\n", record, serial,
-                name, location, residue, chain, number, x, 2.0, -3.5, 0.5, 12.25, element);
+  std::snprintf(line, sizeof line, "%-6s%5d %-4s%c%3s %c%4d    %8.3f%8.3f%8.3f%6.2f%6.2f          %2s\n", record,
+                serial, name, location, residue, chain, number, x, 2.0, -3.5, 0.5, 12.25, element);
   return line;
 }
 
-const std::string two_atoms = atom("ATOM", 1, " N", ' ', "ALA", 'A', 7, 1.0, "N") +
-                              atom("HETATM", 2, "FE", ' ', "HEM", 'B', 1, 4.0, "FE");
+const std::string two_atoms =
+    atom("ATOM", 1, " N", ' ', "ALA", 'A', 7, 1.0, "N") + atom("HETATM", 2, "FE", ' ', "HEM", 'B', 1, 4.0, "FE");
 
 TEST(Pdb, ReadsAtomsAndTheirAttributes) {
   Folder folder;
@@ -68,9 +68,10 @@ TEST(Pdb, OfAlternativeResiduesTheFirstCounts) {
 TEST(Pdb, ModelsAreSteps) {
   Folder folder;
   const std::string one = atom("ATOM", 1, " N", ' ', "ALA", 'A', 1, 1.0, "N");
-  const auto frames = read_all(folder.write("a.pdb", "CRYST1   10.000   20.000   30.000  90.00  90.00  90.00 P 1\n"
-                                                     "MODEL        1\n" + one + "ENDMDL\nMODEL        2\n" + one + one +
-                                                         "ENDMDL\nEND\n"));
+  const auto frames = read_all(folder.write("a.pdb",
+                                            "CRYST1   10.000   20.000   30.000  90.00  90.00  90.00 P 1\n"
+                                            "MODEL        1\n" +
+                                                one + "ENDMDL\nMODEL        2\n" + one + one + "ENDMDL\nEND\n"));
   ASSERT_EQ(frames.size(), 2u);
   EXPECT_EQ(frames[0].step, 1u);
   EXPECT_EQ(frames[1].step, 2u);
@@ -103,8 +104,7 @@ TEST(Pdb, ReadsWindowsLineEnds) {
 TEST(Pdb, ErrorsNameTheLine) {
   Folder folder;
   const auto error = [&](const std::string& text) { return error_of(folder.write("a.pdb", text)); };
-  EXPECT_EQ(error("HEADER    NOTHING\nEND\n"),
-            "a.pdb:2: the file ends here, expected \"ATOM\" or \"HETATM\" records");
+  EXPECT_EQ(error("HEADER    NOTHING\nEND\n"), "a.pdb:2: the file ends here, expected \"ATOM\" or \"HETATM\" records");
   EXPECT_EQ(error("REMARK\n" + two_atoms.substr(0, 50) + "\n"),
             "a.pdb:2: an atom record of 50 characters, expected at least 54");
   std::string stars = two_atoms;

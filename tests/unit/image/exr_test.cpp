@@ -3,12 +3,15 @@
 
 #include <array>
 #include <bit>
+#include <initializer_list>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "image/image_writer.h"
 #include "image_test_tools.h"
+#include "read_image.h"
 
 namespace insitu {
 namespace {

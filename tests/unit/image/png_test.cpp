@@ -1,7 +1,9 @@
 // PNG files, read back with OpenImageIO.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,6 +11,7 @@
 #include "image/image_writer.h"
 #include "image/png_text.h"
 #include "image_test_tools.h"
+#include "read_image.h"
 
 namespace insitu {
 namespace {

@@ -1,0 +1,329 @@
+// Streams of rays through a P-k-d tree, for rays that go all ways (occlusion, shadows): all rays of a stream that reach
+// a subtree visit it together, so that its planes and particles are loaded once. Included once per SIMD target.
+//
+// A stream holds the rays of one octant, for which near and far are the same sides everywhere. At a split the list of
+// rays is divided into those that enter the near and those that enter the far side, without a branch on the data; in a
+// leaf SIMD runs over particles and the loop over rays. (Streams of rays that are filtered on the way down: Tsakok,
+// "Faster incoherent rays: Multi-BVH ray stream tracing", HPG 2009; there in a BVH.)
+#if defined(INSITU_KERNELS_PKD_STREAM_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef INSITU_KERNELS_PKD_STREAM_INL_H_
+#undef INSITU_KERNELS_PKD_STREAM_INL_H_
+#else
+#define INSITU_KERNELS_PKD_STREAM_INL_H_
+#endif
+
+#include <memory>
+
+#include "kernels/pkd_single-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace insitu::kernels::HWY_NAMESPACE {
+
+constexpr std::size_t longest_stream = 4096;
+
+// What a subtree needs of a ray; rays themselves stay where they are.
+struct StreamEntry {
+  float t_enter;
+  float t_leave;
+  std::uint32_t ray;
+};
+
+template <class Positions>
+class AnyHitStream {
+ public:
+  using Key = typename Positions::Key;
+
+  // `rays` and `occluded` belong to the caller; a tree of `tree.count` particles.
+  AnyHitStream(const PkdTree& tree, const Positions& positions, const TreeMargin& margin, const Ray* rays,
+               std::uint8_t* occluded, std::size_t most_rays)
+      : tree_(tree),
+        positions_(positions),
+        margin_(margin.value),
+        rays_(rays),
+        occluded_(occluded),
+        lanes_(new RayLanes[most_rays]),
+        entries_(new StreamEntry[most_rays * (Levels(tree.count) + 3)]),
+        crossing_(new std::uint32_t[most_rays]) {
+    uniform_ = tree.radius.kind == RadiusView::Kind::uniform;
+  }
+
+  // Rays begin .. begin + count of the caller's, of which those not yet occluded are traced.
+  void Run(std::size_t begin, std::size_t count) {
+    // One pass puts every ray's octant down, one more per octant collects its rays.
+    std::uint8_t octants[longest_stream];
+    std::size_t sizes[8] = {};
+    for (std::size_t i = 0; i < count; ++i) {
+      octants[i] = 8;
+      if (occluded_[begin + i] != 0 || !Prepare(begin + i, lanes_[i])) continue;
+      const float* inverse = lanes_[i].inverse;
+      octants[i] = static_cast<std::uint8_t>((inverse[0] < 0.0f ? 1 : 0) | (inverse[1] < 0.0f ? 2 : 0) |
+                                             (inverse[2] < 0.0f ? 4 : 0));
+      ++sizes[octants[i]];
+    }
+    first_ray_ = begin;
+    for (std::uint8_t octant = 0; octant < 8; ++octant) {
+      if (sizes[octant] == 0) continue;
+      std::size_t n = 0;
+      for (std::size_t i = 0; i < count; ++i)
+        if (octants[i] == octant) entries_[n++] = {0.0f, lanes_[i].t_high, static_cast<std::uint32_t>(i)};
+      const bool negative[3] = {(octant & 1) != 0, (octant & 2) != 0, (octant & 4) != 0};
+      Traverse(negative, n);
+    }
+  }
+
+ private:
+  // A ray in f32, relative to the point where it enters the tree (see TreeMargin), all of it within two cache lines.
+  struct RayLanes {
+    float origin[3];
+    float direction[3];
+    float inverse[3];
+    float widening[3];
+    float t_low;
+    float t_high;  // -infinity once the ray is occluded
+  };
+
+  struct Node {
+    std::uint64_t begin;
+    std::uint64_t end;
+    PkdBox<Key> box;
+    StreamEntry* rays;
+    std::size_t ray_count;
+  };
+
+  static std::size_t Levels(std::uint64_t particles) {
+    std::size_t levels = 0;
+    for (; particles > pkd_leaf_size; particles /= 2) ++levels;
+    return levels;
+  }
+
+  HWY_INLINE bool Prepare(std::size_t index, RayLanes& lanes) const {
+    const Ray& ray = rays_[index];
+    TreeEntry entry;
+    if (!EnterTree(tree_, margin_, ray, ray.t_max, entry)) return false;
+    for (int c = 0; c < 3; ++c) {
+      lanes.origin[c] = entry.origin[c];
+      lanes.direction[c] = static_cast<float>(ray.direction[c]);
+      lanes.inverse[c] = entry.inverse[c];
+      lanes.widening[c] = entry.widening[c];
+    }
+    lanes.t_low = entry.t_low;
+    lanes.t_high = entry.t_high;
+    return true;
+  }
+
+  HWY_INLINE void Traverse(const bool negative[3], std::size_t count) {
+    // The far side's list follows the near side's in `entries_`, both behind those of the levels above.
+    Node stack[64];
+    int height = 0;
+    Node now{0, tree_.count, RootBox<Key>(tree_), entries_.get(), count};
+    for (;;) {
+      while (now.ray_count != 0 && now.end - now.begin > pkd_leaf_size && !now.box.is_point()) {
+        const int axis = now.box.split_axis();
+        const std::uint64_t mid = now.begin + (now.end - now.begin) / 2;
+        const Key plane = positions_.key(mid, axis);
+        positions_.prefetch(now.begin + (mid - now.begin) / 2);
+        positions_.prefetch(mid + 1 + (now.end - mid - 1) / 2);
+        Node far = now;
+        far.rays = now.rays + now.ray_count;
+        std::size_t crossing = 0;
+        Split(now, static_cast<float>(plane), axis, far, crossing);
+        if (negative[axis]) {
+          far.end = mid;
+          far.box.upper[axis] = plane;
+          now.begin = mid + 1;
+          now.box.lower[axis] = plane;
+        } else {
+          far.begin = mid + 1;
+          far.box.lower[axis] = plane;
+          now.end = mid;
+          now.box.upper[axis] = plane;
+        }
+        if (crossing != 0) VisitCrossed(mid, crossing);
+        if (far.ray_count == 0) continue;
+        if (now.ray_count == 0) {
+          // Nobody stays near: the far list takes its place, so that lists never pile up.
+          std::memmove(now.rays, far.rays, far.ray_count * sizeof(StreamEntry));
+          far.rays = now.rays;
+          now = far;
+          continue;
+        }
+        // The near side's lists grow behind the far one's, which stays for later.
+        StreamEntry* const near_rays = now.rays;
+        stack[height++] = far;
+        now.rays = far.rays + far.ray_count;
+        std::memcpy(now.rays, near_rays, now.ray_count * sizeof(StreamEntry));
+      }
+      if (now.ray_count != 0 && now.end > now.begin) VisitRun(now);
+      if (height == 0) return;
+      now = stack[--height];
+    }
+  }
+
+  // Divides the rays of `now` between its near side, whose list replaces that of `now`, and its far side.
+  HWY_INLINE void Split(Node& now, float plane, int axis, Node& far, std::size_t& crossing) {
+    std::size_t near_count = 0;
+    std::size_t far_count = 0;
+    std::size_t crossing_count = 0;
+    for (std::size_t i = 0; i < now.ray_count; ++i) {
+      const StreamEntry entry = now.rays[i];
+      const RayLanes& ray = lanes_[entry.ray];
+      const float at_plane = (plane - ray.origin[axis]) * ray.inverse[axis];
+      const float near_leave = at_plane + ray.widening[axis];
+      const float far_enter = std::max(at_plane - ray.widening[axis], entry.t_enter);
+      const float leave = std::min(entry.t_leave, ray.t_high);
+      const float leave_near = std::min(leave, near_leave);
+      const bool goes_near = entry.t_enter <= leave_near;
+      const bool goes_far = far_enter <= leave;
+      now.rays[near_count] = {entry.t_enter, leave_near, entry.ray};
+      far.rays[far_count] = {far_enter, leave, entry.ray};
+      crossing_[crossing_count] = entry.ray;
+      near_count += goes_near ? 1 : 0;
+      far_count += goes_far ? 1 : 0;
+      crossing_count += goes_near && goes_far ? 1 : 0;
+    }
+    now.ray_count = near_count;
+    far.ray_count = far_count;
+    crossing = crossing_count;
+  }
+
+  // The particle on a plane, against the rays that cross the widened plane.
+  HWY_INLINE void VisitCrossed(std::uint64_t place, std::size_t count) {
+    float centre[3];
+    positions_.centre_f32(place, centre);
+    const double wide = tree_.radius.value(uniform_ ? 0 : tree_.item(place)) + margin_;
+    const float radius2 = static_cast<float>(wide * wide * (1.0 + 8.0 * f32_unit));
+    for (std::size_t i = 0; i < count; ++i) {
+      const RayLanes& ray = lanes_[crossing_[i]];
+      const float mx = centre[0] - ray.origin[0];
+      const float my = centre[1] - ray.origin[1];
+      const float mz = centre[2] - ray.origin[2];
+      const float b = mx * ray.direction[0] + my * ray.direction[1] + mz * ray.direction[2];
+      const float px = mx - b * ray.direction[0];
+      const float py = my - b * ray.direction[1];
+      const float pz = mz - b * ray.direction[2];
+      if (px * px + py * py + pz * pz <= radius2) Confirm(place, crossing_[i]);
+    }
+  }
+
+  HWY_NOINLINE void Confirm(std::uint64_t place, std::uint32_t ray) {
+    RayLanes& lanes = lanes_[ray];
+    const Ray& exact = rays_[first_ray_ + ray];
+    AnyHitVisitor visitor(exact);
+    if (lanes.t_high < 0.0f || !visitor.visit(tree_, positions_, place, exact)) return;
+    occluded_[first_ray_ + ray] = 1;
+    lanes.t_high = -std::numeric_limits<float>::infinity();
+  }
+
+  HWY_INLINE void VisitRun(const Node& run) {
+    std::uint64_t end = run.end;
+    if (HWY_UNLIKELY(end - run.begin > pkd_leaf_size) && uniform_) end = run.begin + 1;  // equal spheres at one point
+    for (std::uint64_t begin = run.begin; begin < end; begin += pkd_leaf_size)
+      VisitLeafTogether(begin, static_cast<std::size_t>(std::min(end - begin, pkd_leaf_size)), run);
+  }
+
+  HWY_INLINE void VisitLeafTogether(std::uint64_t begin, std::size_t count, const Node& run) {
+    const hn::CappedTag<float, pkd_leaf_size> d;
+    using V = hn::Vec<decltype(d)>;
+    const std::size_t lanes = hn::Lanes(d);
+    constexpr std::size_t padded = 2 * pkd_leaf_size;
+    HWY_ALIGN float radius2[padded];
+    const bool staged = !LoadsVectors(count, lanes);
+    StagedLeaf leaf;
+    if (staged) StageAbsolute(begin, count, leaf);
+    if (!uniform_) {
+      for (std::size_t i = 0; i < count; ++i) {
+        const double wide = tree_.radius.value(tree_.item(begin + i)) + margin_;
+        radius2[i] = static_cast<float>(wide * wide * (1.0 + 8.0 * f32_unit));
+      }
+    }
+    const double wide = tree_.radius.uniform + margin_;
+    const V uniform_radius2 = hn::Set(d, static_cast<float>(wide * wide * (1.0 + 8.0 * f32_unit)));
+    for (std::size_t done = 0; done < count; done += lanes) {
+      const std::size_t first = staged ? done : std::min(done, count - lanes);
+      V x, y, z;
+      if (staged) {
+        x = hn::Load(d, leaf.x + first);
+        y = hn::Load(d, leaf.y + first);
+        z = hn::Load(d, leaf.z + first);
+      } else {
+        LoadCentres(d, begin + first, x, y, z);
+      }
+      const V r2 = uniform_ ? uniform_radius2 : hn::LoadU(d, radius2 + first);
+      const std::size_t valid = std::min(lanes, count - first);
+      for (std::size_t i = 0; i < run.ray_count; ++i) {
+        const RayLanes& ray = lanes_[run.rays[i].ray];
+        const V dx = hn::Set(d, ray.direction[0]);
+        const V dy = hn::Set(d, ray.direction[1]);
+        const V dz = hn::Set(d, ray.direction[2]);
+        const V mx = hn::Sub(x, hn::Set(d, ray.origin[0]));
+        const V my = hn::Sub(y, hn::Set(d, ray.origin[1]));
+        const V mz = hn::Sub(z, hn::Set(d, ray.origin[2]));
+        const V b = hn::MulAdd(mx, dx, hn::MulAdd(my, dy, hn::Mul(mz, dz)));
+        const V px = hn::NegMulAdd(b, dx, mx);
+        const V py = hn::NegMulAdd(b, dy, my);
+        const V pz = hn::NegMulAdd(b, dz, mz);
+        const V distance2 = hn::MulAdd(px, px, hn::MulAdd(py, py, hn::Mul(pz, pz)));
+        const auto close = hn::Le(distance2, r2);
+        if (HWY_LIKELY(hn::AllFalse(d, close))) continue;
+        const V s = hn::Sqrt(hn::Max(hn::Sub(r2, distance2), hn::Zero(d)));
+        const auto in_time =
+            hn::And(hn::Le(hn::Sub(b, s), hn::Set(d, ray.t_high)), hn::Ge(hn::Add(b, s), hn::Set(d, ray.t_low)));
+        std::uint8_t bytes[8] = {};
+        hn::StoreMaskBits(d, hn::And(close, in_time), bytes);
+        std::uint64_t bits;
+        std::memcpy(&bits, bytes, sizeof bits);
+        bits &= ~std::uint64_t{0} >> (64 - valid);
+        for (; bits != 0; bits &= bits - 1)
+          Confirm(begin + first + static_cast<std::uint64_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(bits)),
+                  run.rays[i].ray);
+      }
+    }
+  }
+
+  HWY_INLINE bool LoadsVectors(std::size_t count, std::size_t lanes) const {
+    if constexpr (std::is_same_v<Positions, PlacedPositions<float>>)
+      return (positions_.packed_records() || positions_.packed_columns()) && count >= lanes;
+    return false;
+  }
+
+  template <class D, class V>
+  HWY_INLINE void LoadCentres(D d, std::uint64_t place, V& x, V& y, V& z) const {
+    if constexpr (std::is_same_v<Positions, PlacedPositions<float>>) {
+      if (positions_.packed_records()) {
+        hn::LoadInterleaved3(d, positions_.scalars(place, 0), x, y, z);
+      } else {
+        x = hn::LoadU(d, positions_.scalars(place, 0));
+        y = hn::LoadU(d, positions_.scalars(place, 1));
+        z = hn::LoadU(d, positions_.scalars(place, 2));
+      }
+    } else {
+      x = y = z = hn::Zero(d);
+    }
+  }
+
+  HWY_INLINE void StageAbsolute(std::uint64_t begin, std::size_t count, StagedLeaf& leaf) const {
+    for (std::size_t i = 0; i < count; ++i) {
+      float centre[3];
+      positions_.centre_f32(begin + i, centre);
+      leaf.x[i] = centre[0];
+      leaf.y[i] = centre[1];
+      leaf.z[i] = centre[2];
+    }
+  }
+
+  const PkdTree& tree_;
+  const Positions& positions_;
+  const double margin_;
+  const Ray* rays_;
+  std::uint8_t* occluded_;
+  std::unique_ptr<RayLanes[]> lanes_;
+  std::unique_ptr<StreamEntry[]> entries_;
+  std::unique_ptr<std::uint32_t[]> crossing_;
+  std::size_t first_ray_ = 0;
+  bool uniform_;
+};
+
+}  // namespace insitu::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // per target
