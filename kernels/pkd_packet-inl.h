@@ -17,7 +17,11 @@ constexpr std::size_t packet_size = 16;
 // Fewer rays than this go on one by one, with SIMD over particles.
 constexpr int fewest_together = 4;
 
-// Rays in f32, as EnterTree makes them.
+// Rays in f32, as EnterTree makes them; where their entries are close to each other, as those of camera rays are, all
+// distances count from the nearest one.
+//
+// Such rays form a beam: at every distance t from there they stay within beam_start + beam_growth t of its axis, the
+// mean of the rays. A particle whose distance from the axis is above its radius plus that is hit by none of them.
 class RayPacket {
  public:
   static constexpr std::size_t size = packet_size;
@@ -25,22 +29,49 @@ class RayPacket {
   // Takes rays[0 .. count).
   void Load(const PkdTree& tree, const TreeMargin& margin, const Ray* rays, std::size_t count, const double* t_limits) {
     margin_ = margin.value;
+    std::uint32_t inside = 0;
+    double nearest = std::numeric_limits<double>::infinity();
+    double farthest = -nearest;
+    TreeEntry entries[size];
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!EnterTree(tree, margin_, rays[i], t_limits[i], entries[i])) continue;
+      inside |= 1u << i;
+      nearest = std::min(nearest, entries[i].t_shift);
+      farthest = std::max(farthest, entries[i].t_shift);
+    }
+    const bool together = farthest - nearest <= margin.extent;
     for (std::size_t i = 0; i < size; ++i) {
-      const std::size_t from = std::min(i, count - 1);
-      TreeEntry entry;
-      const bool inside = EnterTree(tree, margin_, rays[from], t_limits[from], entry) && i < count;
-      t_shift_[i] = inside ? entry.t_shift : 0.0;
+      const bool is_inside = (inside >> i & 1) != 0;
+      if (!is_inside) {
+        SetLaneEmpty(i);
+        continue;
+      }
+      const TreeEntry& entry = entries[i];
+      const double shift = together ? nearest : entry.t_shift;
+      t_shift_[i] = shift;
       for (int c = 0; c < 3; ++c) {
-        origin_[c][i] = inside ? entry.origin[c] : 0.0f;
-        direction_[c][i] = static_cast<float>(rays[from].direction[c]);
+        origin_[c][i] = static_cast<float>(rays[i].origin[c] + shift * rays[i].direction[c]);
+        direction_[c][i] = static_cast<float>(rays[i].direction[c]);
         inverse_[c][i] = entry.inverse[c];
         widening_[c][i] = entry.widening[c];
       }
-      t_low_[i] = inside ? entry.t_low : 0.0f;
-      t_enter_[i] = inside ? 0.0f : 1.0f;
-      t_high_[i] = inside ? entry.t_high : -1.0f;
+      const double later = entry.t_shift - shift;
+      t_low_[i] = static_cast<float>(rays[i].t_min - shift - margin_);
+      t_enter_[i] = static_cast<float>(later * (1.0 - 4.0 * f32_unit));
+      t_high_[i] = static_cast<float>(static_cast<double>(entry.t_high) + later);
     }
+    MakeBeam(together && inside != 0, inside);
   }
+
+  bool has_beam() const { return has_beam_; }
+  // The axis as a ray without limits, for VisitLeaf-like tests.
+  const float* beam_origin() const { return beam_origin_; }
+  const float* beam_direction() const { return beam_direction_; }
+  float beam_radius(float t_leave) const { return beam_start_ + beam_growth_ * t_leave; }
+  // Most rays go down this axis.
+  bool negative(int axis) const { return negative_[axis]; }
+  // All of them go the same way.
+  bool uniform_sign(int axis) const { return uniform_sign_[axis]; }
 
   double margin() const { return margin_; }
   const float* origin(int axis) const { return origin_[axis]; }
@@ -81,6 +112,60 @@ class RayPacket {
   }
 
  private:
+  void SetLaneEmpty(std::size_t i) {
+    for (int c = 0; c < 3; ++c) {
+      origin_[c][i] = direction_[c][i] = widening_[c][i] = 0.0f;
+      inverse_[c][i] = 1.0f;
+    }
+    t_shift_[i] = 0.0;
+    t_low_[i] = 0.0f;
+    t_enter_[i] = 1.0f;
+    t_high_[i] = -1.0f;
+  }
+
+  void MakeBeam(bool together, std::uint32_t inside) {
+    double axis[6] = {};
+    const int rays = static_cast<int>(hwy::PopCount(inside));
+    for (int c = 0; c < 3; ++c) {
+      int negatives = 0;
+      for (std::size_t i = 0; i < size; ++i) {
+        if ((inside >> i & 1) == 0) continue;
+        axis[c] += static_cast<double>(origin_[c][i]);
+        axis[3 + c] += static_cast<double>(direction_[c][i]);
+        negatives += inverse_[c][i] < 0.0f ? 1 : 0;
+      }
+      negative_[c] = 2 * negatives > rays;
+      uniform_sign_[c] = negatives == 0 || negatives == rays;
+      // Lanes without a ray go the way of the others.
+      for (std::size_t i = 0; i < size; ++i)
+        if ((inside >> i & 1) == 0) inverse_[c][i] = negative_[c] ? -1.0f : 1.0f;
+    }
+    const double length = std::sqrt(axis[3] * axis[3] + axis[4] * axis[4] + axis[5] * axis[5]);
+    has_beam_ = together && length > 0.9 * rays;
+    if (!has_beam_) return;
+    double start = 0.0;
+    double growth = 0.0;
+    for (int c = 0; c < 3; ++c) {
+      beam_origin_[c] = static_cast<float>(axis[c] / rays);
+      beam_direction_[c] = static_cast<float>(axis[3 + c] / length);
+    }
+    for (std::size_t i = 0; i < size; ++i) {
+      if ((inside >> i & 1) == 0) continue;
+      double offset = 0.0;
+      double slope = 0.0;
+      for (int c = 0; c < 3; ++c) {
+        const double apart = static_cast<double>(origin_[c][i]) - static_cast<double>(beam_origin_[c]);
+        const double turned = static_cast<double>(direction_[c][i]) - static_cast<double>(beam_direction_[c]);
+        offset += apart * apart;
+        slope += turned * turned;
+      }
+      start = std::max(start, offset);
+      growth = std::max(growth, slope);
+    }
+    beam_start_ = static_cast<float>(std::sqrt(start) * (1.0 + 1e-5) + margin_);
+    beam_growth_ = static_cast<float>(std::sqrt(growth) * (1.0 + 1e-5));
+  }
+
   HWY_ALIGN float origin_[3][size];
   HWY_ALIGN float direction_[3][size];
   HWY_ALIGN float inverse_[3][size];
@@ -90,6 +175,13 @@ class RayPacket {
   HWY_ALIGN float t_high_[size];
   double t_shift_[size];
   double margin_;
+  bool has_beam_;
+  bool negative_[3];
+  bool uniform_sign_[3];
+  float beam_origin_[3];
+  float beam_direction_[3];
+  float beam_start_;
+  float beam_growth_;
 };
 
 template <class Key>
@@ -115,8 +207,6 @@ class PacketTraversal {
   }
 
   HWY_INLINE void Run() {
-    const D d;
-    const std::size_t lanes = hn::Lanes(d);
     PacketSubtree<Key> stack[64];
     PacketSubtree<Key> now;
     now.begin = 0;
@@ -139,56 +229,30 @@ class PacketTraversal {
         const int axis = now.box.split_axis();
         const std::uint64_t mid = now.begin + (now.end - now.begin) / 2;
         const Key plane = positions_.key(mid, axis);
-        const V at = hn::Set(d, static_cast<float>(plane));
-        // The lower side goes into stack[height], the upper one stays in `now`; then the nearer one is taken first.
-        PacketSubtree<Key>& lower = stack[height];
-        std::uint32_t lower_active = 0;
-        std::uint32_t upper_active = 0;
-        std::uint32_t negative_lanes = 0;
-        for (std::size_t i = 0; i < packet_size; i += lanes) {
-          const V inverse = hn::Load(d, packet_.inverse(axis) + i);
-          const V at_plane = hn::Mul(hn::Sub(at, hn::Load(d, packet_.origin(axis) + i)), inverse);
-          const V widening = hn::Load(d, packet_.widening(axis) + i);
-          const V near_leave = hn::Add(at_plane, widening);
-          const V far_enter = hn::Sub(at_plane, widening);
-          const V enter = hn::Load(d, now.t_enter + i);
-          const V leave = hn::Load(d, now.t_leave + i);
-          const auto negative = hn::Lt(inverse, hn::Zero(d));
-          const V enter_far = hn::Max(enter, far_enter);
-          const V leave_near = hn::Min(leave, near_leave);
-          const V lower_enter = hn::IfThenElse(negative, enter_far, enter);
-          const V lower_leave = hn::IfThenElse(negative, leave, leave_near);
-          const V upper_enter = hn::IfThenElse(negative, enter, enter_far);
-          const V upper_leave = hn::IfThenElse(negative, leave_near, leave);
-          hn::Store(lower_enter, d, lower.t_enter + i);
-          hn::Store(lower_leave, d, lower.t_leave + i);
-          hn::Store(upper_enter, d, now.t_enter + i);
-          hn::Store(upper_leave, d, now.t_leave + i);
-          lower_active |= Bits(d, hn::Le(lower_enter, lower_leave)) << i;
-          upper_active |= Bits(d, hn::Le(upper_enter, upper_leave)) << i;
-          negative_lanes |= Bits(d, negative) << i;
-        }
-        const std::uint32_t crossing = lower_active & upper_active;
+        const bool far_is_lower = packet_.negative(axis);
+        PacketSubtree<Key>& far = stack[height];
+        std::uint32_t far_active = 0;
+        const std::uint32_t near_active = Split(now, far, axis, static_cast<float>(plane), far_active);
+        const std::uint32_t crossing = near_active & far_active;
         if (crossing != 0) VisitParticle(mid, crossing);
-        lower.begin = now.begin;
-        lower.end = mid;
-        lower.box = now.box;
-        lower.box.upper[axis] = plane;
-        now.begin = mid + 1;
-        now.box.lower[axis] = plane;
-        const bool upper_first = 2 * hwy::PopCount(negative_lanes & active) > hwy::PopCount(active);
-        if (lower_active == 0) {
-          active = upper_active;
-        } else if (upper_active == 0) {
-          now = lower;
-          active = lower_active;
-        } else if (upper_first) {
-          ++height;
-          active = upper_active;
+        far.begin = far_is_lower ? now.begin : mid + 1;
+        far.end = far_is_lower ? mid : now.end;
+        far.box = now.box;
+        if (far_is_lower) {
+          far.box.upper[axis] = plane;
+          now.box.lower[axis] = plane;
+          now.begin = mid + 1;
         } else {
-          std::swap(now, lower);
-          ++height;
-          active = lower_active;
+          far.box.lower[axis] = plane;
+          now.box.upper[axis] = plane;
+          now.end = mid;
+        }
+        if (near_active == 0) {
+          now = far;
+          active = far_active;
+        } else {
+          if (far_active != 0) ++height;
+          active = near_active;
         }
       }
       do {
@@ -210,6 +274,44 @@ class PacketTraversal {
     std::uint32_t bits;
     std::memcpy(&bits, bytes, sizeof bits);
     return bits;
+  }
+
+  // What the near and the far side see of the rays: `now` becomes the near one. Returns the lanes that enter it.
+  HWY_INLINE std::uint32_t Split(PacketSubtree<Key>& now, PacketSubtree<Key>& far, int axis, float plane,
+                                 std::uint32_t& far_active) const {
+    const D d;
+    const std::size_t lanes = hn::Lanes(d);
+    const V at = hn::Set(d, plane);
+    const V zero = hn::Zero(d);
+    std::uint32_t near_active = 0;
+    for (std::size_t i = 0; i < packet_size; i += lanes) {
+      const V inverse = hn::Load(d, packet_.inverse(axis) + i);
+      const V at_plane = hn::Mul(hn::Sub(at, hn::Load(d, packet_.origin(axis) + i)), inverse);
+      const V widening = hn::Load(d, packet_.widening(axis) + i);
+      const V enter = hn::Load(d, now.t_enter + i);
+      const V leave = hn::Load(d, now.t_leave + i);
+      V near_enter = enter;
+      V near_leave = hn::Min(leave, hn::Add(at_plane, widening));
+      V far_enter = hn::Max(enter, hn::Sub(at_plane, widening));
+      V far_leave = leave;
+      if (HWY_UNLIKELY(!packet_.uniform_sign(axis))) {
+        // Rays that go the other way have near and far exchanged.
+        const auto other = packet_.negative(axis) ? hn::Ge(inverse, zero) : hn::Lt(inverse, zero);
+        const V enter_there = near_enter;
+        const V leave_there = near_leave;
+        near_enter = hn::IfThenElse(other, far_enter, near_enter);
+        near_leave = hn::IfThenElse(other, far_leave, near_leave);
+        far_enter = hn::IfThenElse(other, enter_there, far_enter);
+        far_leave = hn::IfThenElse(other, leave_there, far_leave);
+        hn::Store(near_enter, d, now.t_enter + i);
+      }
+      hn::Store(near_leave, d, now.t_leave + i);
+      hn::Store(far_enter, d, far.t_enter + i);
+      hn::Store(far_leave, d, far.t_leave + i);
+      near_active |= Bits(d, hn::Le(near_enter, near_leave)) << i;
+      far_active |= Bits(d, hn::Le(far_enter, far_leave)) << i;
+    }
+    return near_active;
   }
 
   // Takes hits found meanwhile into account.
@@ -274,7 +376,53 @@ class PacketTraversal {
   HWY_INLINE void VisitTogether(const PacketSubtree<Key>& run, std::uint32_t active) {
     std::uint64_t end = run.end;
     if (HWY_UNLIKELY(end - run.begin > pkd_leaf_size) && Visitor::one_of_coincident && uniform_) end = run.begin + 1;
-    for (std::uint64_t place = run.begin; place < end; ++place) VisitParticle(place, active);
+    if (!uniform_ || !packet_.has_beam()) {
+      for (std::uint64_t place = run.begin; place < end; ++place) VisitParticle(place, active);
+      return;
+    }
+    float t_leave = 0.0f;
+    for (std::uint32_t lanes = active; lanes != 0; lanes &= lanes - 1)
+      t_leave = std::max(t_leave, run.t_leave[hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes)]);
+    for (std::uint64_t begin = run.begin; begin < end; begin += pkd_leaf_size)
+      VisitWithinBeam(begin, static_cast<std::size_t>(std::min(end - begin, pkd_leaf_size)), t_leave, active);
+  }
+
+  // SIMD over particles finds those that the beam can touch up to the distance t_leave; they are visited by all rays.
+  HWY_INLINE void VisitWithinBeam(std::uint64_t begin, std::size_t count, float t_leave, std::uint32_t active) {
+    const hn::CappedTag<float, pkd_leaf_size> d;
+    using W = hn::Vec<decltype(d)>;
+    const std::size_t lanes = hn::Lanes(d);
+    const LeafCentres<Positions> centres(positions_, begin, count);
+    const float wide = static_cast<float>((tree_.radius.uniform + packet_.margin()) * (1.0 + 4.0 * f32_unit)) +
+                       packet_.beam_radius(t_leave);
+    const W wide2 = hn::Set(d, wide * wide);
+    const float* o = packet_.beam_origin();
+    const float* axis = packet_.beam_direction();
+    const W dx = hn::Set(d, axis[0]);
+    const W dy = hn::Set(d, axis[1]);
+    const W dz = hn::Set(d, axis[2]);
+    for (std::size_t done = 0; done < count; done += lanes) {
+      const std::size_t first = centres.first_of(d, done);
+      W x, y, z;
+      centres.load(d, first, x, y, z);
+      const W mx = hn::Sub(x, hn::Set(d, o[0]));
+      const W my = hn::Sub(y, hn::Set(d, o[1]));
+      const W mz = hn::Sub(z, hn::Set(d, o[2]));
+      const W b = hn::MulAdd(mx, dx, hn::MulAdd(my, dy, hn::Mul(mz, dz)));
+      const W px = hn::NegMulAdd(b, dx, mx);
+      const W py = hn::NegMulAdd(b, dy, my);
+      const W pz = hn::NegMulAdd(b, dz, mz);
+      const W distance2 = hn::MulAdd(px, px, hn::MulAdd(py, py, hn::Mul(pz, pz)));
+      std::uint8_t bytes[8] = {};
+      hn::StoreMaskBits(d, hn::Le(distance2, wide2), bytes);
+      std::uint64_t bits;
+      std::memcpy(&bits, bytes, sizeof bits);
+      bits &= ~std::uint64_t{0} >> (64 - std::min(lanes, count - first));
+      // What the vector before has seen already.
+      if (first < done) bits &= ~std::uint64_t{0} << (done - first);
+      for (; bits != 0; bits &= bits - 1)
+        VisitParticle(begin + first + static_cast<std::uint64_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(bits)), active);
+    }
   }
 
   HWY_NOINLINE void VisitOneByOne(const PacketSubtree<Key>& from, std::uint32_t active) {

@@ -73,10 +73,11 @@ class TreeFrame {
 // small beside the radii; `fits` says whether it is. Otherwise every leaf needs a frame of its own.
 struct TreeMargin {
   double value;
+  double extent;  // of the tree, as a sum of sides
   bool fits;
 
   explicit TreeMargin(const PkdTree& tree) {
-    double extent = 2.0 * tree.radius_max;
+    extent = 2.0 * tree.radius_max;
     double magnitude = 0.0;
     for (int c = 0; c < 3; ++c) {
       extent += tree.upper[c] - tree.lower[c];

@@ -227,9 +227,7 @@ class AnyHitStream {
     const std::size_t lanes = hn::Lanes(d);
     constexpr std::size_t padded = 2 * pkd_leaf_size;
     HWY_ALIGN float radius2[padded];
-    const bool staged = !LoadsVectors(count, lanes);
-    StagedLeaf leaf;
-    if (staged) StageAbsolute(begin, count, leaf);
+    const LeafCentres<Positions> centres(positions_, begin, count);
     if (!uniform_) {
       for (std::size_t i = 0; i < count; ++i) {
         const double wide = tree_.radius.value(tree_.item(begin + i)) + margin_;
@@ -239,15 +237,9 @@ class AnyHitStream {
     const double wide = tree_.radius.uniform + margin_;
     const V uniform_radius2 = hn::Set(d, static_cast<float>(wide * wide * (1.0 + 8.0 * f32_unit)));
     for (std::size_t done = 0; done < count; done += lanes) {
-      const std::size_t first = staged ? done : std::min(done, count - lanes);
+      const std::size_t first = centres.first_of(d, done);
       V x, y, z;
-      if (staged) {
-        x = hn::Load(d, leaf.x + first);
-        y = hn::Load(d, leaf.y + first);
-        z = hn::Load(d, leaf.z + first);
-      } else {
-        LoadCentres(d, begin + first, x, y, z);
-      }
+      centres.load(d, first, x, y, z);
       const V r2 = uniform_ ? uniform_radius2 : hn::LoadU(d, radius2 + first);
       const std::size_t valid = std::min(lanes, count - first);
       for (std::size_t i = 0; i < run.ray_count; ++i) {
@@ -277,37 +269,6 @@ class AnyHitStream {
           Confirm(begin + first + static_cast<std::uint64_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(bits)),
                   run.rays[i].ray);
       }
-    }
-  }
-
-  HWY_INLINE bool LoadsVectors(std::size_t count, std::size_t lanes) const {
-    if constexpr (std::is_same_v<Positions, PlacedPositions<float>>)
-      return (positions_.packed_records() || positions_.packed_columns()) && count >= lanes;
-    return false;
-  }
-
-  template <class D, class V>
-  HWY_INLINE void LoadCentres(D d, std::uint64_t place, V& x, V& y, V& z) const {
-    if constexpr (std::is_same_v<Positions, PlacedPositions<float>>) {
-      if (positions_.packed_records()) {
-        hn::LoadInterleaved3(d, positions_.scalars(place, 0), x, y, z);
-      } else {
-        x = hn::LoadU(d, positions_.scalars(place, 0));
-        y = hn::LoadU(d, positions_.scalars(place, 1));
-        z = hn::LoadU(d, positions_.scalars(place, 2));
-      }
-    } else {
-      x = y = z = hn::Zero(d);
-    }
-  }
-
-  HWY_INLINE void StageAbsolute(std::uint64_t begin, std::size_t count, StagedLeaf& leaf) const {
-    for (std::size_t i = 0; i < count; ++i) {
-      float centre[3];
-      positions_.centre_f32(begin + i, centre);
-      leaf.x[i] = centre[0];
-      leaf.y[i] = centre[1];
-      leaf.z[i] = centre[2];
     }
   }
 

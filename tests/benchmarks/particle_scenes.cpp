@@ -56,22 +56,28 @@ std::vector<insitu::kernels::Ray> camera_rays(const std::string& view, std::uint
   const double ahead = close ? 0.5 : 1.3;  // distance of an image plane of size 1
   std::vector<insitu::kernels::Ray> rays;
   rays.reserve(std::size_t{edge_px} * edge_px);
-  constexpr std::uint32_t tile = 16;
-  for (std::uint32_t tile_y = 0; tile_y < edge_px; tile_y += tile)
-    for (std::uint32_t tile_x = 0; tile_x < edge_px; tile_x += tile)
-      for (std::uint32_t y = tile_y; y < tile_y + tile; ++y)
-        for (std::uint32_t x = tile_x; x < tile_x + tile; ++x) {
-          const glm::dvec3 direction =
-              glm::normalize(glm::dvec3((x + 0.5) / edge_px - 0.5, 0.5 - (y + 0.5) / edge_px, ahead));
-          insitu::kernels::Ray ray{};
-          for (int c = 0; c < 3; ++c) {
-            ray.origin[c] = eye[c];
-            ray.direction[c] = direction[c];
-          }
-          ray.t_max = std::numeric_limits<double>::infinity();
-          ray.exclude = insitu::kernels::no_item;
-          rays.push_back(ray);
+  // Tiles of 64 x 64 pixels, each in Morton order: neighbours stay together, however many rays one takes at a time.
+  const auto even_bits = [](std::uint32_t v) {
+    return (v & 1) | (v >> 1 & 2) | (v >> 2 & 4) | (v >> 3 & 8) | (v >> 4 & 16) | (v >> 5 & 32);
+  };
+  constexpr std::uint32_t tile = 64;
+  for (std::uint32_t tile_y = 0; tile_y < edge_px; tile_y += tile) {
+    for (std::uint32_t tile_x = 0; tile_x < edge_px; tile_x += tile) {
+      for (std::uint32_t i = 0; i < tile * tile; ++i) {
+        const double x = (tile_x + even_bits(i) + 0.5) / edge_px - 0.5;
+        const double y = 0.5 - (tile_y + even_bits(i >> 1) + 0.5) / edge_px;
+        const glm::dvec3 direction = glm::normalize(glm::dvec3(x, y, ahead));
+        insitu::kernels::Ray ray{};
+        for (int c = 0; c < 3; ++c) {
+          ray.origin[c] = eye[c];
+          ray.direction[c] = direction[c];
         }
+        ray.t_max = std::numeric_limits<double>::infinity();
+        ray.exclude = insitu::kernels::no_item;
+        rays.push_back(ray);
+      }
+    }
+  }
   return rays;
 }
 

@@ -21,7 +21,7 @@ struct ParticleScene {
 ParticleScene make_scene(const std::string& name, std::uint64_t count);
 
 constexpr std::uint32_t image_edge_px = 1024;
-constexpr std::size_t tile_rays = 256;  // 16 x 16 pixels, one after another in every array of rays
+constexpr std::size_t tile_rays = 4096;  // 64 x 64 pixels, in Morton order in every array of rays
 
 // "far": the whole cloud in view. "close": from within it.
 std::vector<insitu::kernels::Ray> camera_rays(const std::string& view, std::uint32_t edge_px);
