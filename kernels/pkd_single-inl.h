@@ -69,22 +69,25 @@ class TreeFrame {
 };
 
 // Whole trees in f32: rays start at the point where they enter the box of the tree, rounded to f32, and `value` covers
-// that rounding and those of pkd_leaf-inl.h for reach = the size of the box. This is good as long as the margin is
-// small beside the radii; `fits` says whether it is. Otherwise every leaf needs a frame of its own.
+// that rounding and those of pkd_leaf-inl.h for reach = twice the size of the box. While the margin is below the
+// largest radius this is the fast way: at worst four times as many candidates as hits have to be confirmed. Smaller
+// particles get a frame for every leaf.
 struct TreeMargin {
   double value;
-  double extent;  // of the tree, as a sum of sides
+  double extent;  // diagonal of the tree
   bool fits;
 
   explicit TreeMargin(const PkdTree& tree) {
-    extent = 2.0 * tree.radius_max;
+    double diagonal2 = 0.0;
     double magnitude = 0.0;
     for (int c = 0; c < 3; ++c) {
-      extent += tree.upper[c] - tree.lower[c];
+      const double side = tree.upper[c] - tree.lower[c] + 2.0 * tree.radius_max;
+      diagonal2 += side * side;
       magnitude = std::max({magnitude, std::abs(tree.lower[c]), std::abs(tree.upper[c])});
     }
+    extent = std::sqrt(diagonal2);
     value = 32.0 * f32_unit * (2.0 * extent + magnitude);
-    fits = value < tree.radius_max * (1.0 / 64.0) && extent > 1e-12 && extent + magnitude < 1e12;
+    fits = value < tree.radius_max && extent > 1e-12 && extent + magnitude < 1e12;
   }
 };
 

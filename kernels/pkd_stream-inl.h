@@ -112,7 +112,6 @@ class AnyHitStream {
   }
 
   HWY_INLINE void Traverse(const bool negative[3], std::size_t count) {
-    // The far side's list follows the near side's in `entries_`, both behind those of the levels above.
     Node stack[64];
     int height = 0;
     Node now{0, tree_.count, RootBox<Key>(tree_), entries_.get(), count};
@@ -124,7 +123,6 @@ class AnyHitStream {
         positions_.prefetch(now.begin + (mid - now.begin) / 2);
         positions_.prefetch(mid + 1 + (now.end - mid - 1) / 2);
         Node far = now;
-        far.rays = now.rays + now.ray_count;
         std::size_t crossing = 0;
         Split(now, static_cast<float>(plane), axis, far, crossing);
         if (negative[axis]) {
@@ -139,19 +137,11 @@ class AnyHitStream {
           now.box.upper[axis] = plane;
         }
         if (crossing != 0) VisitCrossed(mid, crossing);
-        if (far.ray_count == 0) continue;
         if (now.ray_count == 0) {
-          // Nobody stays near: the far list takes its place, so that lists never pile up.
-          std::memmove(now.rays, far.rays, far.ray_count * sizeof(StreamEntry));
-          far.rays = now.rays;
           now = far;
-          continue;
+        } else if (far.ray_count != 0) {
+          stack[height++] = far;
         }
-        // The near side's lists grow behind the far one's, which stays for later.
-        StreamEntry* const near_rays = now.rays;
-        stack[height++] = far;
-        now.rays = far.rays + far.ray_count;
-        std::memcpy(now.rays, near_rays, now.ray_count * sizeof(StreamEntry));
       }
       if (now.ray_count != 0 && now.end > now.begin) VisitRun(now);
       if (height == 0) return;
@@ -159,11 +149,14 @@ class AnyHitStream {
     }
   }
 
-  // Divides the rays of `now` between its near side, whose list replaces that of `now`, and its far side.
+  // Divides the rays of `now` between its far side, whose list takes the place of that of `now`, and its near side,
+  // whose list stands behind it: lists never get longer on the way down, so that those of all levels fit into
+  // `entries_`.
   HWY_INLINE void Split(Node& now, float plane, int axis, Node& far, std::size_t& crossing) {
     std::size_t near_count = 0;
     std::size_t far_count = 0;
     std::size_t crossing_count = 0;
+    StreamEntry* const near_rays = now.rays + now.ray_count;
     for (std::size_t i = 0; i < now.ray_count; ++i) {
       const StreamEntry entry = now.rays[i];
       const RayLanes& ray = lanes_[entry.ray];
@@ -174,13 +167,14 @@ class AnyHitStream {
       const float leave_near = std::min(leave, near_leave);
       const bool goes_near = entry.t_enter <= leave_near;
       const bool goes_far = far_enter <= leave;
-      now.rays[near_count] = {entry.t_enter, leave_near, entry.ray};
+      near_rays[near_count] = {entry.t_enter, leave_near, entry.ray};
       far.rays[far_count] = {far_enter, leave, entry.ray};
       crossing_[crossing_count] = entry.ray;
       near_count += goes_near ? 1 : 0;
       far_count += goes_far ? 1 : 0;
       crossing_count += goes_near && goes_far ? 1 : 0;
     }
+    now.rays = near_rays;
     now.ray_count = near_count;
     far.ray_count = far_count;
     crossing = crossing_count;

@@ -6,7 +6,7 @@
 #include "api/descriptor.h"
 #include "core/float_environment.h"
 #include "core/stopwatch.h"
-#include "kernels/pkd_traverse.h"
+#include "geometry/geometry_info.h"
 
 // Recognises a pointer that is not, or no longer, a context, as far as that can be done.
 constexpr std::uint64_t context_magic = 0x696e736974753031;  // "insitu01"
@@ -82,10 +82,8 @@ uint32_t insitu_abi_version(void) { return INSITU_ABI; }
 
 const char* insitu_version_text(void) {
   static const std::string text = [] {
-    std::string result = std::to_string(INSITU_VERSION_MAJOR) + "." + std::to_string(INSITU_VERSION_MINOR) + "." +
-                         std::to_string(INSITU_VERSION_PATCH) + " (SIMD:";
-    for (const char* name : insitu::kernels::simd_target_names()) result.append(" ").append(name);
-    return result + ")";
+    return std::to_string(INSITU_VERSION_MAJOR) + "." + std::to_string(INSITU_VERSION_MINOR) + "." +
+           std::to_string(INSITU_VERSION_PATCH) + " (SIMD:" + insitu::simd_targets_text() + ")";
   }();
   return text.c_str();
 }
@@ -257,7 +255,11 @@ insitu_status insitu_view_destroy(insitu_context context, insitu_view view) {
 
 insitu_status insitu_image_create(insitu_context context, const insitu_image_desc* desc, insitu_image* out) {
   if (out != nullptr) out->id = 0;
-  return call(context, [&](Context& c) { output(out, "out").id = c.create_image(copy_in(desc, "insitu_image_desc")); });
+  return call(context, [&](Context& c) {
+    insitu_image_desc defaults;
+    insitu_image_desc_init(&defaults);
+    output(out, "out").id = c.create_image(desc == nullptr ? defaults : copy_in(desc, "insitu_image_desc"));
+  });
 }
 
 insitu_status insitu_render(insitu_context context, insitu_view view, insitu_image image) {

@@ -25,6 +25,9 @@ double rounding_of(const glm::dvec3& point, const SceneRay& ray, double t) {
   return 32.0 * 2.220446049250313e-16 * largest;
 }
 
+// Bits 0, 2, 4 and 6 of i: with those of i / 2 the coordinates of point i of a Morton curve over 16 x 16 pixels.
+std::uint32_t even_bits(std::uint32_t i) { return (i & 1) | (i >> 1 & 2) | (i >> 2 & 4) | (i >> 3 & 8); }
+
 }  // namespace
 
 TileRenderer::TileRenderer(const Scene& scene, const RenderSettings& settings, const EffectPlan& plan,
@@ -58,11 +61,17 @@ void TileRenderer::trace_camera(std::uint32_t sample) {
   samples_.resize(count);
   stream_.resize(count);
   hits_.resize(count);
-  for (std::uint32_t i = 0; i < count; ++i) {
+  // In Morton order, so that rays that follow each other stay together.
+  std::uint32_t next = 0;
+  for (std::uint32_t place = 0; place < tile_edge_px * tile_edge_px; ++place) {
+    const std::uint32_t column = even_bits(place);
+    const std::uint32_t row = even_bits(place >> 1);
+    if (column >= width_ || row >= height_) continue;
+    const std::uint32_t i = next++;
     Sample& s = samples_[i];
-    s.pixel = i;
-    s.x = x0_ + i % width_;
-    s.y = y0_ + i / width_;
+    s.pixel = row * width_ + column;
+    s.x = x0_ + column;
+    s.y = y0_ + row;
     s.ray = {};
     glm::dvec3 origin;
     glm::dvec3 direction;
@@ -106,7 +115,8 @@ void TileRenderer::occlude_ambient(std::uint32_t sample) {
   constexpr std::uint32_t purpose = 1;
   stream_.clear();
   lit_.clear();
-  for (const Sample& s : samples_) {
+  for (std::uint32_t i = 0; i < samples_.size(); ++i) {
+    const Sample& s = samples_[i];
     if (!s.hit.found()) continue;
     const glm::dvec2 noise = pixel_noise(s.x, s.y, purpose, plan_.seed);
     SceneRay ray;
@@ -119,15 +129,15 @@ void TileRenderer::occlude_ambient(std::uint32_t sample) {
       set_ray(ray, s.point, cosine_direction(s.normal, u));
       stream_.push_back(ray);
     }
-    lit_.push_back(s.pixel);
+    lit_.push_back(i);
   }
   occluded_.resize(stream_.size());
   scene_.any_hits(stream_.data(), occluded_.data(), stream_.size());
   const std::uint8_t* occluded = occluded_.data();
-  for (const std::uint32_t pixel : lit_) {
+  for (const std::uint32_t i : lit_) {
     std::uint32_t blocked = 0;
     for (std::uint32_t k = 0; k < plan_.ao_samples; ++k) blocked += *occluded++;
-    samples_[pixel].ambient_visible = 1.0 - static_cast<double>(blocked) / plan_.ao_samples;
+    samples_[i].ambient_visible = 1.0 - static_cast<double>(blocked) / plan_.ao_samples;
   }
   costs_.ambient_occlusion.rays += stream_.size();
   costs_.ambient_occlusion.seconds += watch.seconds();
@@ -138,9 +148,10 @@ void TileRenderer::light_directly() {
     const Stopwatch watch;
     stream_.clear();
     lit_.clear();
-    for (const Sample& s : samples_) {
+    for (std::uint32_t i = 0; i < samples_.size(); ++i) {
+      const Sample& s = samples_[i];
       if (!s.hit.found() || !(glm::dot(s.normal, light.towards) > 0.0)) continue;
-      lit_.push_back(s.pixel);
+      lit_.push_back(i);
       if (!plan_.shadows) continue;
       SceneRay ray;
       ray.exclude_geometry = s.hit.geometry;

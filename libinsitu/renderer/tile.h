@@ -52,7 +52,7 @@ class TileRenderer {
   std::vector<SceneRay> stream_;
   std::vector<SceneHit> hits_;
   std::vector<std::uint8_t> occluded_;
-  std::vector<std::uint32_t> lit_;  // samples that the stream's rays belong to
+  std::vector<std::uint32_t> lit_;  // places in samples_ that the stream's rays belong to
   std::vector<glm::dvec4> pixels_;  // sums over samples, premultiplied
 };
 

@@ -11,8 +11,8 @@
 
 #include "api_test_tools.h"
 
-// ------------------------------------------------------------------------------------------- an allocator that fails --
-// Replaces operator new for this program and all its libraries.
+// ------------------------------------------------------------------------------------------- an allocator that fails
+// -- Replaces operator new for this program and all its libraries.
 
 namespace {
 

@@ -128,9 +128,7 @@ const Case cases[] = {
      INSITU_ERROR_INVALID_ARGUMENT,
      {"radius", "aligned", "4"}},
     {"misaligned second column",
-     [](Input& i) {
-       i.position = insitu_array_columns(INSITU_F32, i.radii, shifted(i.radii, 1), i.radii, items);
-     },
+     [](Input& i) { i.position = insitu_array_columns(INSITU_F32, i.radii, shifted(i.radii, 1), i.radii, items); },
      INSITU_ERROR_INVALID_ARGUMENT,
      {"position", "component[1]", "aligned"}},
     {"misaligned table of rows",

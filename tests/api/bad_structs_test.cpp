@@ -131,8 +131,8 @@ TEST(BadStructs, SizesOfAView) {
   EXPECT_TRUE(works(context, insitu_view_create(context, &desc, &out)));
   EXPECT_TRUE(works(context, insitu_view_set_lights(context, out, &lights[0].now, 2)));
   lights[1].more[3] = 1;
-  EXPECT_TRUE(fails(context, insitu_view_set_lights(context, out, &lights[0].now, 2), INSITU_ERROR_ABI,
-                    {"insitu_light"}));
+  EXPECT_TRUE(
+      fails(context, insitu_view_set_lights(context, out, &lights[0].now, 2), INSITU_ERROR_ABI, {"insitu_light"}));
   lights[0].now.struct_size = 0;
   EXPECT_TRUE(fails(context, insitu_view_set_lights(context, out, &lights[0].now, 2), INSITU_ERROR_INVALID_ARGUMENT,
                     {"insitu_light", "struct_size"}));
@@ -194,8 +194,7 @@ TEST(BadStructs, Contexts) {
   EXPECT_TRUE(refused(INSITU_ERROR_INVALID_ARGUMENT, "max_threads"));
   insitu_context_desc_init(&desc);
   Later<insitu_context_desc> surplus = later(desc, 1);
-  EXPECT_TRUE(fails(nullptr, insitu_context_create(&surplus.now, &context), INSITU_ERROR_ABI,
-                    {"insitu_context_desc"}));
+  EXPECT_TRUE(fails(nullptr, insitu_context_create(&surplus.now, &context), INSITU_ERROR_ABI, {"insitu_context_desc"}));
   EXPECT_TRUE(fails(nullptr, insitu_context_create(nullptr, nullptr), INSITU_ERROR_INVALID_ARGUMENT, {"out"}));
 
   EXPECT_EQ(insitu_context_create(nullptr, &context), INSITU_OK);
@@ -310,58 +309,55 @@ TEST(BadStructs, CamerasThatCannotBe) {
   insitu_camera camera;
   insitu_camera_init(&camera);
   camera.eye[2] = 5.0;
-  expect_refused<insitu_camera>(studio.context, camera,
-                                {{"kind", [](insitu_camera& c) { c.kind = 2; }},
-                                 {"eye", [](insitu_camera& c) { c.eye[1] = nan; }},
-                                 {"look_at", [](insitu_camera& c) { c.look_at[0] = infinity; }},
-                                 {"up", [](insitu_camera& c) { c.up[2] = nan; }},
-                                 {"fov_y_deg", [](insitu_camera& c) { c.fov_y_deg = -1.0; }},
-                                 {"fov_y_deg", [](insitu_camera& c) { c.fov_y_deg = 180.0; }},
-                                 {"fov_y_deg", [](insitu_camera& c) { c.fov_y_deg = nan; }},
-                                 {"height", [](insitu_camera& c) { c.height = -1.0; }},
-                                 {"height", [](insitu_camera& c) { c.height = infinity; }},
-                                 {"near_clip", [](insitu_camera& c) { c.near_clip = -1.0; }},
-                                 {"near_clip", [](insitu_camera& c) { c.near_clip = nan; }},
-                                 {"far_clip", [](insitu_camera& c) { c.far_clip = -1.0; }},
-                                 {"far_clip", [](insitu_camera& c) { c.far_clip = nan; }},
-                                 {"far_clip",
-                                  [](insitu_camera& c) {
-                                    c.near_clip = 2.0;
-                                    c.far_clip = 1.0;
-                                  }}},
-                                [&](const insitu_camera* c) {
-                                  return insitu_view_set_camera(studio.context, studio.view, c);
-                                });
+  expect_refused<insitu_camera>(
+      studio.context, camera,
+      {{"kind", [](insitu_camera& c) { c.kind = 2; }},
+       {"eye", [](insitu_camera& c) { c.eye[1] = nan; }},
+       {"look_at", [](insitu_camera& c) { c.look_at[0] = infinity; }},
+       {"up", [](insitu_camera& c) { c.up[2] = nan; }},
+       {"fov_y_deg", [](insitu_camera& c) { c.fov_y_deg = -1.0; }},
+       {"fov_y_deg", [](insitu_camera& c) { c.fov_y_deg = 180.0; }},
+       {"fov_y_deg", [](insitu_camera& c) { c.fov_y_deg = nan; }},
+       {"height", [](insitu_camera& c) { c.height = -1.0; }},
+       {"height", [](insitu_camera& c) { c.height = infinity; }},
+       {"near_clip", [](insitu_camera& c) { c.near_clip = -1.0; }},
+       {"near_clip", [](insitu_camera& c) { c.near_clip = nan; }},
+       {"far_clip", [](insitu_camera& c) { c.far_clip = -1.0; }},
+       {"far_clip", [](insitu_camera& c) { c.far_clip = nan; }},
+       {"far_clip",
+        [](insitu_camera& c) {
+          c.near_clip = 2.0;
+          c.far_clip = 1.0;
+        }}},
+      [&](const insitu_camera* c) { return insitu_view_set_camera(studio.context, studio.view, c); });
 }
 
 TEST(BadStructs, EffectsLightsAndBackgroundsThatCannotBe) {
   Studio studio;
   insitu_effects effects;
   insitu_effects_init(&effects);
-  expect_refused<insitu_effects>(studio.context, effects,
-                                 {{"flags", [](insitu_effects& e) { e.flags = 1u << 30; }},
-                                  {"ao_samples", [](insitu_effects& e) { e.ao_samples = ~0u; }},
-                                  {"ao_radius", [](insitu_effects& e) { e.ao_radius = -1.0; }},
-                                  {"ao_radius", [](insitu_effects& e) { e.ao_radius = nan; }}},
-                                 [&](const insitu_effects* e) {
-                                   return insitu_view_set_effects(studio.context, studio.view, e);
-                                 });
+  expect_refused<insitu_effects>(
+      studio.context, effects,
+      {{"flags", [](insitu_effects& e) { e.flags = 1u << 30; }},
+       {"ao_samples", [](insitu_effects& e) { e.ao_samples = ~0u; }},
+       {"ao_radius", [](insitu_effects& e) { e.ao_radius = -1.0; }},
+       {"ao_radius", [](insitu_effects& e) { e.ao_radius = nan; }}},
+      [&](const insitu_effects* e) { return insitu_view_set_effects(studio.context, studio.view, e); });
   insitu_light light;
   insitu_light_init(&light);
   light.kind = INSITU_LIGHT_DIRECTIONAL;
   light.direction[2] = -1.0;
-  expect_refused<insitu_light>(studio.context, light,
-                               {{"kind", [](insitu_light& l) { l.kind = 7; }},
-                                {"direction", [](insitu_light& l) { l.direction[2] = 0.0; }},
-                                {"direction", [](insitu_light& l) { l.direction[0] = nan; }},
-                                {"colour", [](insitu_light& l) { l.color[1] = -1.0; }},
-                                {"colour", [](insitu_light& l) { l.color[1] = infinity; }},
-                                {"intensity", [](insitu_light& l) { l.intensity = -1.0; }},
-                                {"intensity", [](insitu_light& l) { l.intensity = nan; }},
-                                {"flags", [](insitu_light& l) { l.flags = 8; }}},
-                               [&](const insitu_light* l) {
-                                 return insitu_view_set_lights(studio.context, studio.view, l, 1);
-                               });
+  expect_refused<insitu_light>(
+      studio.context, light,
+      {{"kind", [](insitu_light& l) { l.kind = 7; }},
+       {"direction", [](insitu_light& l) { l.direction[2] = 0.0; }},
+       {"direction", [](insitu_light& l) { l.direction[0] = nan; }},
+       {"colour", [](insitu_light& l) { l.color[1] = -1.0; }},
+       {"colour", [](insitu_light& l) { l.color[1] = infinity; }},
+       {"intensity", [](insitu_light& l) { l.intensity = -1.0; }},
+       {"intensity", [](insitu_light& l) { l.intensity = nan; }},
+       {"flags", [](insitu_light& l) { l.flags = 8; }}},
+      [&](const insitu_light* l) { return insitu_view_set_lights(studio.context, studio.view, l, 1); });
   for (const double bad : {-1.0, nan, infinity}) {
     const double color[4] = {bad, 0.0, 0.0, 1.0};
     EXPECT_TRUE(fails(studio.context, insitu_view_set_background(studio.context, studio.view, color),
@@ -371,25 +367,24 @@ TEST(BadStructs, EffectsLightsAndBackgroundsThatCannotBe) {
                       INSITU_ERROR_INVALID_ARGUMENT, {"background"}));
   }
   for (const double bad : {nan, infinity})
-    EXPECT_TRUE(fails(studio.context, insitu_view_turn(studio.context, studio.view, bad),
-                      INSITU_ERROR_INVALID_ARGUMENT, {"angle"}));
+    EXPECT_TRUE(fails(studio.context, insitu_view_turn(studio.context, studio.view, bad), INSITU_ERROR_INVALID_ARGUMENT,
+                      {"angle"}));
 }
 
 TEST(BadStructs, StylesThatCannotBe) {
   Studio studio;
   const insitu_style style = testing::make_style("heat", 0.0, 1.0);
-  expect_refused<insitu_style>(studio.context, style,
-                               {{"color_by", [](insitu_style& s) { s.color_by = 2; }},
-                                {"attribute", [](insitu_style& s) { s.attribute = nullptr; }},
-                                {"attribute", [](insitu_style& s) { s.attribute = ""; }},
-                                {"component", [](insitu_style& s) { s.component = 5; }},
-                                {"range_mode", [](insitu_style& s) { s.range_mode = 2; }},
-                                {"range", [](insitu_style& s) { s.range[0] = nan; }},
-                                {"range", [](insitu_style& s) { s.range[1] = infinity; }},
-                                {"color", [](insitu_style& s) { s.color[0] = -1.0; }}},
-                               [&](const insitu_style* s) {
-                                 return insitu_geometry_set_style(studio.context, studio.geometry, s);
-                               });
+  expect_refused<insitu_style>(
+      studio.context, style,
+      {{"color_by", [](insitu_style& s) { s.color_by = 2; }},
+       {"attribute", [](insitu_style& s) { s.attribute = nullptr; }},
+       {"attribute", [](insitu_style& s) { s.attribute = ""; }},
+       {"component", [](insitu_style& s) { s.component = 5; }},
+       {"range_mode", [](insitu_style& s) { s.range_mode = 2; }},
+       {"range", [](insitu_style& s) { s.range[0] = nan; }},
+       {"range", [](insitu_style& s) { s.range[1] = infinity; }},
+       {"color", [](insitu_style& s) { s.color[0] = -1.0; }}},
+      [&](const insitu_style* s) { return insitu_geometry_set_style(studio.context, studio.geometry, s); });
 }
 
 TEST(BadStructs, AnUnknownColourMapIsToldTheValidOnes) {
@@ -472,8 +467,7 @@ TEST(BadStructs, ImagesThatCannotBe) {
   for (const std::uint32_t bad : {0u, 3u, 1u << 9})
     EXPECT_TRUE(fails(studio.context, insitu_image_channel(studio.context, studio.image, bad, &array),
                       INSITU_ERROR_INVALID_ARGUMENT, {"channel"}));
-  EXPECT_TRUE(fails(studio.context,
-                    insitu_image_channel(studio.context, studio.image, INSITU_CHANNEL_NORMAL, &array),
+  EXPECT_TRUE(fails(studio.context, insitu_image_channel(studio.context, studio.image, INSITU_CHANNEL_NORMAL, &array),
                     INSITU_ERROR_INVALID_ARGUMENT, {"channel"}));
 }
 

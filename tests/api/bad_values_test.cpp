@@ -58,8 +58,8 @@ Outcome draw(const Balls& balls, std::uint32_t order, double radius_default = 0.
   insitu_step_begin(studio.context, 0, 0.0);
   EXPECT_TRUE(works(studio.context, insitu_particles_update(studio.context, studio.geometry, &desc)));
   EXPECT_TRUE(works(studio.context, insitu_commit(studio.context)));
-  EXPECT_TRUE(works(studio.context,
-                    insitu_geometry_bounds(studio.context, studio.geometry, outcome.lower, outcome.upper)));
+  EXPECT_TRUE(
+      works(studio.context, insitu_geometry_bounds(studio.context, studio.geometry, outcome.lower, outcome.upper)));
   EXPECT_TRUE(works(studio.context, insitu_render(studio.context, studio.view, studio.image)));
   EXPECT_TRUE(works(studio.context, insitu_step_end(studio.context)));
   outcome.stats = studio.context.stats();
@@ -211,8 +211,8 @@ TEST(BadValues, AutomaticRadiusInEveryLayout) {
       insitu_step_begin(studio.context, 0, 0.0);
       insitu_particles_update(studio.context, studio.geometry, &desc);
       insitu_commit(studio.context);
-      EXPECT_TRUE(works(studio.context,
-                        insitu_geometry_bounds(studio.context, studio.geometry, lower, upper[integers])));
+      EXPECT_TRUE(
+          works(studio.context, insitu_geometry_bounds(studio.context, studio.geometry, lower, upper[integers])));
       insitu_step_end(studio.context);
     }
     for (int c = 0; c < 3; ++c) EXPECT_DOUBLE_EQ(upper[0][c], upper[1][c]);

@@ -99,8 +99,7 @@ TEST(CallOrder, AnUpdateAfterTheCommit) {
   insitu_particles_update(studio.context, studio.geometry, &cloud.desc);
   insitu_commit(studio.context);
   EXPECT_TRUE(works(studio.context, insitu_particles_update(studio.context, studio.geometry, &other.desc)));
-  EXPECT_TRUE(fails(studio.context, insitu_render(studio.context, studio.view, studio.image), wrong_state,
-                    {"commit"}));
+  EXPECT_TRUE(fails(studio.context, insitu_render(studio.context, studio.view, studio.image), wrong_state, {"commit"}));
   EXPECT_EQ(insitu_step_end(studio.context), wrong_state);
 
   ASSERT_TRUE(works(studio.context, studio.step(other.desc)));
@@ -212,8 +211,8 @@ TEST(CallOrder, TheFirstErrorSticks) {
   const testing::Picture picture = studio.picture();
 
   insitu_step_begin(studio.context, 1, 0.0);
-  EXPECT_TRUE(fails(studio.context, insitu_render(studio.context, studio.view, {0}), INSITU_ERROR_INVALID_HANDLE,
-                    {"image"}));
+  EXPECT_TRUE(
+      fails(studio.context, insitu_render(studio.context, studio.view, {0}), INSITU_ERROR_INVALID_HANDLE, {"image"}));
   const std::string text = studio.context.error();
   // Everything else returns the same, and does nothing.
   EXPECT_EQ(insitu_particles_update(studio.context, studio.geometry, nullptr), INSITU_ERROR_INVALID_HANDLE);

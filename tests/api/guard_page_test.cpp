@@ -38,9 +38,7 @@ class GuardedArray {
         array.component[c] = memory_[c]->flush(count == 0 ? 0 : (count - 1) * stride + size, at_end);
       return array;
     }
-    const std::size_t stride = shape == Shape::strided       ? item + size
-                               : shape == Shape::far_strided ? item + 40
-                                                             : item;
+    const std::size_t stride = shape == Shape::strided ? item + size : shape == Shape::far_strided ? item + 40 : item;
     const std::size_t bytes = count == 0 ? 0 : (count - 1) * stride + item;
     std::byte* first = memory_[0]->flush(bytes, at_end);
     auto step = static_cast<std::int64_t>(stride);

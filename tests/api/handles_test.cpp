@@ -48,8 +48,8 @@ std::vector<Call> every_call() {
                      }});
   };
   const auto of_view = [&](const char* name, auto call) {
-    calls.push_back(
-        {name, "view", [call](insitu_context c, std::uint64_t id, const Objects&) { return call(c, insitu_view{id}); }});
+    calls.push_back({name, "view",
+                     [call](insitu_context c, std::uint64_t id, const Objects&) { return call(c, insitu_view{id}); }});
   };
   const auto of_image = [&](const char* name, auto call) {
     calls.push_back({name, "image",

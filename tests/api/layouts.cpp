@@ -52,8 +52,8 @@ std::byte* address_of(const insitu_array& array, std::size_t item, std::uint32_t
   const bool rows = (array.flags & INSITU_ARRAY_ROWS) != 0;
   const bool columns = array.components > 1 && array.component[1] != nullptr;
   const std::size_t packed = rows ? sizeof(void*) : columns ? size : size * array.components;
-  const auto stride = static_cast<std::ptrdiff_t>(array.stride_bytes == 0 ? static_cast<std::int64_t>(packed)
-                                                                          : array.stride_bytes);
+  const auto stride =
+      static_cast<std::ptrdiff_t>(array.stride_bytes == 0 ? static_cast<std::int64_t>(packed) : array.stride_bytes);
   auto* at = static_cast<std::byte*>(array.component[columns ? component : 0]);
   at += static_cast<std::ptrdiff_t>(item) * stride;
   if (rows) std::memcpy(&at, at, sizeof at);

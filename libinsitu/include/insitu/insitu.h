@@ -350,12 +350,13 @@ typedef struct insitu_image_desc {
   uint32_t reserved;          /* 0 */
 } insitu_image_desc;
 
+/* `desc` may be NULL: all defaults. Errors: invalid_argument, over_budget, out_of_memory. */
 INSITU_API insitu_status insitu_image_create(insitu_context context, const insitu_image_desc *desc, insitu_image *out);
 /* Renders all committed geometries. The picture depends on the data, the view and the image alone: not on the number of
  * threads, the SIMD target of the machine or the order of the particles. Errors: wrong_state (nothing committed). */
 INSITU_API insitu_status insitu_render(insitu_context context, insitu_view view, insitu_image image);
 /* Writes ".png" (sRGB, colour only) or ".exr" (linear, every channel of the image). `pattern` may hold {step}, or
- * {step:6} for zero padding to six digits. The file appears under a temporary name in the same folder and is renamed
+ * {step:6} for zero padding to six digits, {time} or {time:3} for three digits behind the point, and {{ for a brace. The file appears under a temporary name in the same folder and is renamed
  * when it is complete. Errors: io (the text names the file and the reason), unsupported (other endings). */
 INSITU_API insitu_status insitu_image_write(insitu_context context, insitu_image image, const char *pattern);
 /* A view of the library's own pixels, row by row from the top; valid until the next render into or destruction of this

@@ -134,6 +134,72 @@ INSTANTIATE_TEST_SUITE_P(PowerOfTen, EveryMagnitude, ::testing::Values(-30, -12,
                            return (info.param < 0 ? "minus_" : "plus_") + std::to_string(std::abs(info.param));
                          });
 
+// Rays as a camera sends them, and as many more as fill streams of occlusion rays: they share their way through the
+// tree.
+class RaysTogether : public ::testing::TestWithParam<Shape> {};
+
+TEST_P(RaysTogether, FromACamera) {
+  std::uint64_t seed = 5000;
+  for (const double distance : {0.0, 0.3, 2.0, 100.0}) {
+    for (const Layout layout : {Layout::records_f32, Layout::columns_f32, Layout::records_f64, Layout::rows_f64}) {
+      TreeCase c;
+      c.count = 2000;
+      c.shape = GetParam();
+      c.layout = layout;
+      c.order = all_orders[seed % all_orders.size()];
+      c.radii = all_radii[seed % 3];
+      c.offset = seed % 2 == 0 ? 0.0 : 3.0;
+      c.seed = ++seed;
+      const TestTree tree(c);
+      CounterRandom random(seed);
+      double ahead[3];
+      random.direction(ahead);
+      double aim[3];
+      tree.tree().centre(0, aim);
+      // A picture of 24 x 24 pixels, as wide as the cloud is from there; every fourth has limits of its own.
+      const double spread = 1.5 / (1.0 + 24.0 * distance);
+      std::vector<kernels::Ray> rays;
+      for (int pixel = 0; pixel < 24 * 24; ++pixel) {
+        kernels::Ray ray{};
+        const double off[3] = {pixel % 24 - 11.5, pixel / 24 - 11.5, 0.5 * (pixel % 24) - 6.0};
+        double length = 0.0;
+        for (int k = 0; k < 3; ++k) {
+          ray.origin[k] = aim[k] - distance * ahead[k];
+          ray.direction[k] = ahead[k] + spread * off[k] / 12.0;
+          length += ray.direction[k] * ray.direction[k];
+        }
+        for (double& d : ray.direction) d /= std::sqrt(length);
+        if (pixel % 16 == 0) ray.t_min = random.unit() * distance;
+        if (pixel % 4 == 0) ray.t_max = std::max(ray.t_min, distance + random.between(-0.5, 0.5));
+        rays.push_back(ray);
+      }
+      expect_brute_force_hits(tree.tree(), rays, 64, text_of(c) + ", camera");
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, RaysTogether, ::testing::ValuesIn(all_shapes),
+                         [](const auto& info) { return std::string(name_of(info.param)); });
+
+// More occlusion rays than one stream holds, some of them occluded already.
+TEST(Traverse, LongStreams) {
+  TreeCase c;
+  c.count = 3000;
+  c.shape = Shape::clustered;
+  c.radii = Radii::per_item;
+  const TestTree tree(c);
+  CounterRandom random(6000);
+  const std::vector<kernels::Ray> rays = make_rays(tree, 10000, random);
+  std::vector<std::uint8_t> alone(rays.size(), 0);
+  for (std::size_t i = 0; i < rays.size(); ++i) kernels::pkd_any_hits(tree.tree(), &rays[i], &alone[i], 1);
+  std::vector<std::uint8_t> together(rays.size(), 0);
+  for (std::size_t i = 0; i < rays.size(); i += 3) together[i] = 2;
+  kernels::pkd_any_hits(tree.tree(), rays.data(), together.data(), rays.size());
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) wrong += together[i] != (i % 3 == 0 ? 2 : alone[i]) ? 1 : 0;
+  EXPECT_EQ(wrong, 0u);
+}
+
 // A tree over arrays of the caller through `index`, in f64 or f32.
 kernels::PkdTree make_indexed_tree(bool f32, const std::vector<double>& wide, const std::vector<float>& narrow,
                                    const std::vector<double>& radius, std::vector<std::uint32_t>& index) {
