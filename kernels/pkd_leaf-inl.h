@@ -21,8 +21,9 @@ namespace insitu::kernels::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Half of the spacing of f32 numbers at 1: the relative error of one operation.
+// Half of the spacing of numbers at 1: the relative error of one operation.
 constexpr double f32_unit = 5.9604644775390625e-8;
+constexpr double f64_unit = 1.1102230246251565e-16;
 
 // What f32 tests of particles need of a ray: everything relative to a point q of the ray.
 //
@@ -54,7 +55,10 @@ HWY_INLINE RayFrame MakeLeafFrame(const Ray& ray, double t_enter, double reach) 
     frame.tail[c] = static_cast<float>(frame.point[c] - static_cast<double>(frame.head[c]));
     frame.direction[c] = static_cast<float>(ray.direction[c]);
   }
-  frame.margin = 32.0 * f32_unit * reach;
+  // The second term is the rounding of q itself, in double, for rays that come from far away.
+  double distance = std::abs(t_enter) + reach;
+  for (int c = 0; c < 3; ++c) distance = std::max(distance, std::abs(ray.origin[c]));
+  frame.margin = 32.0 * f32_unit * reach + 64.0 * f64_unit * distance;
   frame.t_low = static_cast<float>((ray.t_min - t_enter - frame.margin) * frame.scale);
   return frame;
 }

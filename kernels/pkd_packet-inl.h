@@ -373,9 +373,17 @@ class PacketTraversal {
     }
   }
 
+  bool IsExcluded(std::uint64_t item, std::uint32_t active) const {
+    for (; active != 0; active &= active - 1)
+      if (rays_[hwy::Num0BitsBelowLS1Bit_Nonzero32(active)].exclude == item) return true;
+    return false;
+  }
+
   HWY_INLINE void VisitTogether(const PacketSubtree<Key>& run, std::uint32_t active) {
     std::uint64_t end = run.end;
-    if (HWY_UNLIKELY(end - run.begin > pkd_leaf_size) && Visitor::one_of_coincident && uniform_) end = run.begin + 1;
+    if (HWY_UNLIKELY(end - run.begin > pkd_leaf_size) && Visitor::one_of_coincident && uniform_ &&
+        !IsExcluded(tree_.item(run.begin), active))
+      end = run.begin + 1;  // equal spheres: the build puts the one to be shown first
     if (!uniform_ || !packet_.has_beam()) {
       for (std::uint64_t place = run.begin; place < end; ++place) VisitParticle(place, active);
       return;

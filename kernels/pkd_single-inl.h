@@ -77,6 +77,13 @@ struct TreeMargin {
   double extent;  // diagonal of the tree
   bool fits;
 
+  // Rays from very far away lose more in double than the margin has to spare.
+  bool Fits(const Ray& ray) const {
+    double distance = 0.0;
+    for (int c = 0; c < 3; ++c) distance = std::max(distance, std::abs(ray.origin[c]));
+    return fits && 128.0 * f64_unit * distance < 4.0 * f32_unit * extent;
+  }
+
   explicit TreeMargin(const PkdTree& tree) {
     double diagonal2 = 0.0;
     double magnitude = 0.0;
@@ -132,7 +139,7 @@ HWY_INLINE bool VisitRun(const PkdTree& tree, const Positions& positions, const 
                          const Subtree<typename Positions::Key, typename Frames::Real>& run, const Ray& ray,
                          Visitor& visitor) {
   if (HWY_UNLIKELY(run.end - run.begin > pkd_leaf_size) && Visitor::one_of_coincident &&
-      tree.radius.kind == RadiusView::Kind::uniform)
+      tree.radius.kind == RadiusView::Kind::uniform && tree.item(run.begin) != ray.exclude)
     return visitor.visit(tree, positions, run.begin, ray);  // equal spheres: the build puts the one to be shown first
   const RayFrame& frame = frames.frame(tree, run);
   for (std::uint64_t begin = run.begin; begin < run.end; begin += pkd_leaf_size)
@@ -228,7 +235,7 @@ HWY_INLINE void TraverseTree(const PkdTree& tree, const Positions& positions, co
     slab.negative[c] = direction < 0.0;
     slab.inverse[c] = std::abs(direction) > parallel ? 1.0 / direction : (direction < 0.0 ? -1.0 : 1.0) / parallel;
     const double extent = std::abs(tree.lower[c]) + std::abs(tree.upper[c]) + std::abs(ray.origin[c]);
-    slab.widening[c] = (tree.radius_max * (1.0 + 1e-12) + extent * 1e-15) * std::abs(slab.inverse[c]);
+    slab.widening[c] = (tree.radius_max * (1.0 + 1e-12) + extent * 4e-15) * std::abs(slab.inverse[c]);
     const double at_lower = (tree.lower[c] - slab.origin[c]) * slab.inverse[c];
     const double at_upper = (tree.upper[c] - slab.origin[c]) * slab.inverse[c];
     root.t_enter = std::max(root.t_enter, std::min(at_lower, at_upper) - slab.widening[c]);

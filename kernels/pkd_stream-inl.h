@@ -38,7 +38,7 @@ class AnyHitStream {
                std::uint8_t* occluded, std::size_t most_rays)
       : tree_(tree),
         positions_(positions),
-        margin_(margin.value),
+        margin_(margin),
         rays_(rays),
         occluded_(occluded),
         lanes_(new RayLanes[most_rays]),
@@ -54,7 +54,14 @@ class AnyHitStream {
     std::size_t sizes[8] = {};
     for (std::size_t i = 0; i < count; ++i) {
       octants[i] = 8;
-      if (occluded_[begin + i] != 0 || !Prepare(begin + i, lanes_[i])) continue;
+      if (occluded_[begin + i] != 0) continue;
+      if (HWY_UNLIKELY(!margin_.Fits(rays_[begin + i]))) {
+        AnyHitVisitor visitor(rays_[begin + i]);
+        TraverseTree(tree_, positions_, rays_[begin + i], visitor);
+        occluded_[begin + i] = visitor.found ? 1 : 0;
+        continue;
+      }
+      if (!Prepare(begin + i, lanes_[i])) continue;
       const float* inverse = lanes_[i].inverse;
       octants[i] = static_cast<std::uint8_t>((inverse[0] < 0.0f ? 1 : 0) | (inverse[1] < 0.0f ? 2 : 0) |
                                              (inverse[2] < 0.0f ? 4 : 0));
@@ -99,7 +106,7 @@ class AnyHitStream {
   HWY_INLINE bool Prepare(std::size_t index, RayLanes& lanes) const {
     const Ray& ray = rays_[index];
     TreeEntry entry;
-    if (!EnterTree(tree_, margin_, ray, ray.t_max, entry)) return false;
+    if (!EnterTree(tree_, margin_.value, ray, ray.t_max, entry)) return false;
     for (int c = 0; c < 3; ++c) {
       lanes.origin[c] = entry.origin[c];
       lanes.direction[c] = static_cast<float>(ray.direction[c]);
@@ -184,7 +191,7 @@ class AnyHitStream {
   HWY_INLINE void VisitCrossed(std::uint64_t place, std::size_t count) {
     float centre[3];
     positions_.centre_f32(place, centre);
-    const double wide = tree_.radius.value(uniform_ ? 0 : tree_.item(place)) + margin_;
+    const double wide = tree_.radius.value(uniform_ ? 0 : tree_.item(place)) + margin_.value;
     const float radius2 = static_cast<float>(wide * wide * (1.0 + 8.0 * f32_unit));
     for (std::size_t i = 0; i < count; ++i) {
       const RayLanes& ray = lanes_[crossing_[i]];
@@ -210,7 +217,8 @@ class AnyHitStream {
 
   HWY_INLINE void VisitRun(const Node& run) {
     std::uint64_t end = run.end;
-    if (HWY_UNLIKELY(end - run.begin > pkd_leaf_size) && uniform_) end = run.begin + 1;  // equal spheres at one point
+    // Of equal spheres at one point two stand for all: a ray may start on one of them.
+    if (HWY_UNLIKELY(end - run.begin > pkd_leaf_size) && uniform_) end = run.begin + 2;
     for (std::uint64_t begin = run.begin; begin < end; begin += pkd_leaf_size)
       VisitLeafTogether(begin, static_cast<std::size_t>(std::min(end - begin, pkd_leaf_size)), run);
   }
@@ -224,11 +232,11 @@ class AnyHitStream {
     const LeafCentres<Positions> centres(positions_, begin, count);
     if (!uniform_) {
       for (std::size_t i = 0; i < count; ++i) {
-        const double wide = tree_.radius.value(tree_.item(begin + i)) + margin_;
+        const double wide = tree_.radius.value(tree_.item(begin + i)) + margin_.value;
         radius2[i] = static_cast<float>(wide * wide * (1.0 + 8.0 * f32_unit));
       }
     }
-    const double wide = tree_.radius.uniform + margin_;
+    const double wide = tree_.radius.uniform + margin_.value;
     const V uniform_radius2 = hn::Set(d, static_cast<float>(wide * wide * (1.0 + 8.0 * f32_unit)));
     for (std::size_t done = 0; done < count; done += lanes) {
       const std::size_t first = centres.first_of(d, done);
@@ -268,7 +276,7 @@ class AnyHitStream {
 
   const PkdTree& tree_;
   const Positions& positions_;
-  const double margin_;
+  const TreeMargin margin_;
   const Ray* rays_;
   std::uint8_t* occluded_;
   std::unique_ptr<RayLanes[]> lanes_;

@@ -25,7 +25,9 @@ void FirstHitsIn(const PkdTree& tree, const Ray* rays, Hit* hits, std::size_t co
       visitors[i] = FirstHitVisitor(rays[begin + i], hits[begin + i]);
       limits[i] = visitors[i].t_limit();
     }
-    if (n >= fewest_together && margin.fits) {
+    bool together = n >= fewest_together;
+    for (std::size_t i = 0; i < n; ++i) together = together && margin.Fits(rays[begin + i]);
+    if (together) {
       packet.Load(tree, margin, rays + begin, n, limits);
       PacketTraversal(tree, positions, rays + begin, packet, visitors).Run();
     } else {

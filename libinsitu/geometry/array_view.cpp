@@ -84,10 +84,12 @@ ArrayVerdict judge_layout(const insitu_array& array, Scalar type) {
   if (stride % unit != 0)
     return refuse(INSITU_ERROR_INVALID_ARGUMENT, "stride_bytes " + number(stride) + " is no multiple of the scalar's " +
                                                      number(unit) + " bytes: items would be misaligned");
-  if (std::abs(stride) < packed && array.count > 1)
+  // The magnitude of the smallest stride there is has no signed counterpart.
+  const std::uint64_t span = stride < 0 ? ~static_cast<std::uint64_t>(stride) + 1 : static_cast<std::uint64_t>(stride);
+  if (span < static_cast<std::uint64_t>(packed) && array.count > 1)
     return refuse(INSITU_ERROR_INVALID_ARGUMENT, "stride_bytes " + number(stride) + " is shorter than an item's " +
                                                      number(packed) + " bytes: items would overlap");
-  const std::uint64_t limit = (std::uint64_t{1} << 62) / static_cast<std::uint64_t>(std::abs(stride));
+  const std::uint64_t limit = (std::uint64_t{1} << 62) / span;
   if (array.count > limit)
     return refuse(INSITU_ERROR_INVALID_ARGUMENT,
                   "count " + std::to_string(array.count) + " times the stride is more than any memory");
@@ -205,12 +207,16 @@ void ColumnSet::add_column(MovedColumn column, std::uint64_t count, const std::s
     if (!together || column.rows)
       throw Error(INSITU_ERROR_INVALID_ARGUMENT,
                   what + ": overlaps another array of the set with another stride; they cannot be permuted together");
+    const std::ptrdiff_t begin = std::min<std::ptrdiff_t>(0, -shift);
+    const std::ptrdiff_t end = std::max(bytes, other_bytes - shift);
+    if (end - begin > std::abs(column.stride))
+      throw Error(
+          INSITU_ERROR_INVALID_ARGUMENT,
+          what + ": reaches into the next record of another array of the set; they cannot be permuted together");
     if (shift >= other_bytes || -shift >= bytes) {
       ++other;  // different fields of the same records
       continue;
     }
-    const std::ptrdiff_t begin = std::min<std::ptrdiff_t>(0, -shift);
-    const std::ptrdiff_t end = std::max(bytes, other_bytes - shift);
     column.base += begin;
     column.bytes = static_cast<std::size_t>(end - begin);
     other = columns_.erase(other);

@@ -19,9 +19,10 @@ void set_ray(SceneRay& ray, const glm::dvec3& origin, const glm::dvec3& directio
 
 // How far a point computed as origin + t direction, and the sphere test from there, may be off: some roundings of the
 // largest number involved. Rays that leave the point start beyond it.
-double rounding_of(const glm::dvec3& point, const SceneRay& ray, double t) {
-  double largest = t;
-  for (int c = 0; c < 3; ++c) largest = std::max({largest, std::abs(point[c]), std::abs(ray.ray.origin[c])});
+double rounding_of(const glm::dvec3& point, const SceneRay& ray, double t, const double centre[3], double radius) {
+  double largest = std::max(t, radius);
+  for (int c = 0; c < 3; ++c)
+    largest = std::max({largest, std::abs(point[c]), std::abs(ray.ray.origin[c]), std::abs(centre[c])});
   return 32.0 * 2.220446049250313e-16 * largest;
 }
 
@@ -103,7 +104,7 @@ void TileRenderer::locate(Sample& sample) const {
   const double length = glm::length(outward);
   sample.normal = length > 0.0 ? outward / length : -direction;
   if (glm::dot(sample.normal, direction) > 0.0) sample.normal = -sample.normal;
-  sample.t_epsilon = rounding_of(sample.point, sample.ray, t);
+  sample.t_epsilon = rounding_of(sample.point, sample.ray, t, centre, particles.radius(sample.hit.item));
   sample.ambient_visible = 1.0;
   sample.light = glm::dvec3(0.0);
 }
@@ -126,7 +127,7 @@ void TileRenderer::occlude_ambient(std::uint32_t sample) {
     ray.ray.t_max = plan_.ao_radius;
     for (std::uint32_t k = 0; k < plan_.ao_samples; ++k) {
       const glm::dvec2 u = shifted(r2_point(std::uint64_t{sample} * plan_.ao_samples + k), noise);
-      set_ray(ray, s.point, cosine_direction(s.normal, u));
+      set_ray(ray, s.point + s.t_epsilon * s.normal, cosine_direction(s.normal, u));
       stream_.push_back(ray);
     }
     lit_.push_back(i);
@@ -157,7 +158,7 @@ void TileRenderer::light_directly() {
       ray.exclude_geometry = s.hit.geometry;
       ray.ray.exclude = s.hit.item;
       ray.ray.t_min = s.t_epsilon;
-      set_ray(ray, s.point, light.towards);
+      set_ray(ray, s.point + s.t_epsilon * s.normal, light.towards);
       stream_.push_back(ray);
     }
     occluded_.assign(lit_.size(), 0);

@@ -122,7 +122,7 @@ void fit_camera(Camera& camera, const Bounds& bounds, double aspect) {
     const double x = std::abs(glm::dot(offset, side));
     const double y = std::abs(glm::dot(offset, top));
     const double z = glm::dot(offset, ahead);
-    distance = std::max({distance, x / tan_x - z, y / tan_y - z});
+    distance = std::max({distance, fit_margin * x / tan_x - z, fit_margin * y / tan_y - z, -fit_margin * z});
     height = std::max({height, 2.0 * y, 2.0 * x / aspect});
     depth = std::max(depth, std::abs(z));
   }
@@ -131,7 +131,7 @@ void fit_camera(Camera& camera, const Bounds& bounds, double aspect) {
     camera.height = height * fit_margin;
     camera.eye = centre - ahead * (depth + 0.5 * camera.height + camera.near_clip);
   } else {
-    camera.eye = centre - ahead * (distance * fit_margin);
+    camera.eye = centre - ahead * distance;
   }
 }
 

@@ -1,5 +1,6 @@
 #include "scene/light.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -24,9 +25,11 @@ Light make_light(const insitu_light& description) {
       refuse("colour or intensity is negative or not finite");
   if (light.directional) {
     const glm::dvec3 along(description.direction[0], description.direction[1], description.direction[2]);
-    const double length = glm::length(along);
-    if (!(length > 0.0 && std::isfinite(length))) refuse("a directional light needs a direction");
-    light.towards = -along / length;
+    // Scaled first: components may be as small or large as doubles get.
+    const double largest = std::max({std::abs(along.x), std::abs(along.y), std::abs(along.z)});
+    if (!(largest > 0.0 && std::isfinite(along.x) && std::isfinite(along.y) && std::isfinite(along.z)))
+      refuse("a directional light needs a direction");
+    light.towards = -glm::normalize(along / largest);
   }
   return light;
 }

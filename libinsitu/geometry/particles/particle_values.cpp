@@ -17,8 +17,12 @@ double styled_value(const kernels::ArrayView& view, std::uint64_t item, std::uin
   if (view.components == 1) return view.value(item);
   // The length of a vector, scaled by its largest component: squares neither overflow nor vanish.
   double largest = 0.0;
-  for (std::uint32_t c = 0; c < view.components; ++c) largest = std::max(largest, std::abs(view.value(item, c)));
-  if (!(largest > 0.0) || std::isinf(largest)) return largest + 0.0 * view.value(item);
+  for (std::uint32_t c = 0; c < view.components; ++c) {
+    const double part = std::abs(view.value(item, c));
+    if (std::isnan(part)) return part;
+    largest = std::max(largest, part);
+  }
+  if (largest == 0.0 || std::isinf(largest)) return largest;
   double sum = 0.0;
   for (std::uint32_t c = 0; c < view.components; ++c) {
     const double part = view.value(item, c) / largest;
