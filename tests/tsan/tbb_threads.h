@@ -11,6 +11,7 @@
 #include <atomic>
 #include <cstddef>
 #include <exception>
+#include <functional>
 #include <list>
 #include <map>
 #include <mutex>
@@ -187,12 +188,13 @@ template <class T>
 class enumerable_thread_specific {
  public:
   using iterator = typename std::list<T>::iterator;
-  enumerable_thread_specific() = default;
-  explicit enumerable_thread_specific(T exemplar) : exemplar_(std::move(exemplar)) {}
+  enumerable_thread_specific() : make_([] { return T{}; }) {}
+  template <class Make, class = std::enable_if_t<std::is_invocable_r_v<T, Make>>>
+  explicit enumerable_thread_specific(Make make) : make_(std::move(make)) {}
   T& local() {
     const std::lock_guard lock(mutex_);
     auto [at, is_new] = of_thread_.try_emplace(std::this_thread::get_id(), nullptr);
-    if (is_new) at->second = &values_.emplace_back(exemplar_);
+    if (is_new) at->second = &values_.emplace_back(make_());
     return *at->second;
   }
   iterator begin() { return values_.begin(); }
@@ -200,7 +202,7 @@ class enumerable_thread_specific {
   std::size_t size() const { return values_.size(); }
 
  private:
-  T exemplar_{};
+  std::function<T()> make_;
   std::mutex mutex_;
   std::map<std::thread::id, T*> of_thread_;
   std::list<T> values_;
