@@ -1,4 +1,5 @@
 // The exported functions, one short body each: the exception firewall. No algorithm lives here.
+#include <cstring>
 #include <new>
 #include <string>
 
@@ -24,7 +25,7 @@ using insitu::copy_in;
 using insitu::copy_out;
 using insitu::Error;
 
-thread_local std::string creation_error;
+thread_local char creation_error[1024];
 
 // Calls `report` with what went wrong, when something does.
 template <class Body, class Report>
@@ -51,6 +52,7 @@ bool is_context(insitu_context handle) { return handle != nullptr && handle->mag
 template <class Body>
 insitu_status always(insitu_context handle, Body&& body) noexcept {
   if (!is_context(handle)) return INSITU_ERROR_INVALID_HANDLE;
+  const insitu::FloatEnvironment guard;  // around the stopwatch too: its arithmetic raises flags
   Context& context = handle->context;
   const insitu::Stopwatch watch;
   const insitu_status status = guarded(
@@ -110,7 +112,7 @@ insitu_status insitu_context_create(const insitu_context_desc* desc, insitu_cont
         *out = new insitu_context_s(own);
       },
       [](insitu_status status, const char* text) {
-        creation_error = text;
+        std::strncpy(creation_error, text, sizeof creation_error - 1);
         return status;
       });
 }
@@ -127,7 +129,7 @@ insitu_status insitu_context_set_log(insitu_context context, insitu_log_fn fn, v
 }
 
 const char* insitu_error_text(insitu_context context) {
-  return is_context(context) ? context->context.error_text() : creation_error.c_str();
+  return is_context(context) ? context->context.error_text() : creation_error;
 }
 
 insitu_status insitu_context_set_report(insitu_context context, const char* path) {
@@ -137,23 +139,24 @@ insitu_status insitu_context_set_report(insitu_context context, const char* path
 // ----------------------------------------------------------------------------------------------------------- arrays --
 
 insitu_status insitu_array_check(const insitu_array* array, uint32_t use, insitu_array_report* out) {
-  insitu::ArrayVerdict verdict;
-  const insitu_status status = guarded([&] { verdict = insitu::judge_array(copy_in(array, "insitu_array"), use); },
-                                       [&](insitu_status code, const char* text) {
-                                         verdict.status = code;
-                                         verdict.reason = text;
-                                         return code;
-                                       });
-  if (status == INSITU_OK && out == nullptr) return verdict.status;
-  if (out == nullptr) return status;
   insitu_array_report report;
   insitu_array_report_init(&report);
-  report.status = verdict.status;
-  report.borrowed_bytes = verdict.borrowed_bytes;
-  verdict.reason.copy(report.reason, sizeof report.reason - 1);
+  guarded(
+      [&] {
+        const insitu::ArrayVerdict verdict = insitu::judge_array(copy_in(array, "insitu_array"), use);
+        report.status = verdict.status;
+        report.borrowed_bytes = verdict.borrowed_bytes;
+        verdict.reason.copy(report.reason, sizeof report.reason - 1);
+      },
+      [&](insitu_status code, const char* text) {
+        report.status = code;
+        std::strncpy(report.reason, text, sizeof report.reason - 1);
+        return code;
+      });
+  if (out == nullptr) return report.status;
   const insitu_status copied = guarded([&] { copy_out(report, out, "insitu_array_report"); },
                                        [](insitu_status code, const char*) { return code; });
-  return copied == INSITU_OK ? verdict.status : copied;
+  return copied == INSITU_OK ? report.status : copied;
 }
 
 // --------------------------------------------------------------------------------------------------------- geometry --
@@ -255,11 +258,7 @@ insitu_status insitu_view_destroy(insitu_context context, insitu_view view) {
 
 insitu_status insitu_image_create(insitu_context context, const insitu_image_desc* desc, insitu_image* out) {
   if (out != nullptr) out->id = 0;
-  return call(context, [&](Context& c) {
-    insitu_image_desc defaults;
-    insitu_image_desc_init(&defaults);
-    output(out, "out").id = c.create_image(desc == nullptr ? defaults : copy_in(desc, "insitu_image_desc"));
-  });
+  return call(context, [&](Context& c) { output(out, "out").id = c.create_image(copy_in(desc, "insitu_image_desc")); });
 }
 
 insitu_status insitu_render(insitu_context context, insitu_view view, insitu_image image) {

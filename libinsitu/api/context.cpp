@@ -2,6 +2,8 @@
 
 #include <atomic>
 #include <cmath>
+#include <cstring>
+#include <new>
 
 #include "api/particles_input.h"
 #include "core/error.h"
@@ -78,23 +80,30 @@ void Context::set_log(insitu_log_fn fn, void* user, std::int32_t level) {
 
 void Context::set_report(const char* path) { report_path_ = path == nullptr ? "" : path; }
 
-void Context::log(std::int32_t level, const std::string& text) noexcept {
-  if (log_fn_ != nullptr && level <= log_level_) log_fn_(log_user_, level, text.c_str());
+void Context::log(std::int32_t level, const char* text) noexcept {
+  if (log_fn_ != nullptr && level <= log_level_) log_fn_(log_user_, level, text);
 }
 
 void Context::warn(const std::string& text) {
   report_.warnings.push_back(text);
-  log(INSITU_LOG_WARNING, text);
+  log(INSITU_LOG_WARNING, text.c_str());
 }
 
-insitu_status Context::fail(insitu_status status, std::string text) noexcept {
-  error_text_ = std::move(text);
-  log(INSITU_LOG_ERROR, error_text_);
+// Without memory of its own: what failed may have been an allocation.
+insitu_status Context::fail(insitu_status status, const char* text) noexcept {
+  keep_error_text(text);
+  log(INSITU_LOG_ERROR, error_text_.data());
   if (in_step_ && report_.status == INSITU_OK) {
     report_.status = status;
-    report_.error = error_text_;
+    report_.error = error_text_.data();  // reserved by begin_step
   }
   return status;
+}
+
+void Context::keep_error_text(const char* text) noexcept {
+  const std::size_t length = std::min(std::strlen(text), error_text_.size() - 1);
+  std::memmove(error_text_.data(), text, length);
+  error_text_[length] = '\0';
 }
 
 void Context::need_step(const char* call) const {
@@ -163,8 +172,8 @@ void Context::restore_order(std::uint64_t id) {
 void Context::set_style(std::uint64_t id, const insitu_style& description) {
   GeometryObject& geometry = geometries_.get(id);
   const Style style = make_style(description);
-  const Colormap& map = colormap_of(style);
-  if (geometry.particles.is_bound()) workers_.run([&] { Colors(style, geometry.particles, map); });
+  colormap_of(style);
+  if (geometry.particles.is_bound()) Colors::check(style, geometry.particles);
   geometry.style = style;
   scene_dirty_ = true;
 }
@@ -326,6 +335,7 @@ void Context::begin_step(std::uint64_t step, double time) {
   report_ = {};
   report_.step = step;
   report_.time = time;
+  report_.error.reserve(error_text_.size());
   costs_ = {};
   in_step_ = true;
   committed_ = false;
@@ -334,6 +344,11 @@ void Context::begin_step(std::uint64_t step, double time) {
 
 void Context::commit() {
   need_step("insitu_commit");
+  // Whatever can be wrong is found before anything moves.
+  geometries_.for_each([this](std::uint64_t, GeometryObject& geometry) {
+    if (geometry.particles.is_bound()) Colors::check(geometry.style, geometry.particles);
+    colormap_of(geometry.style);
+  });
   if (!is_null()) {
     geometries_.for_each([this](std::uint64_t, GeometryObject& geometry) { build(geometry); });
     scene_dirty_ = true;
@@ -385,20 +400,30 @@ insitu_status Context::end_step() {
       if (!geometry.particles.is_bound()) return;
       if (workers_.run([&] { return geometry.particles.checksum(); }) != geometry.checksum)
         fail(INSITU_ERROR_WRONG_STATE,
-             geometry.particles.name() + ": values of its arrays changed between the update and insitu_step_end");
+             (geometry.particles.name() + ": values of its arrays changed between the update and insitu_step_end")
+                 .c_str());
     });
   }
   scene_.clear();
-  refresh_report();
   geometries_.for_each([](std::uint64_t, GeometryObject& geometry) { geometry.particles.release(); });
   in_step_ = false;
   committed_ = false;
-  error_text_ = report_.error;
-  if (!report_path_.empty()) {
-    const AppendResult result = append_line(report_path_, to_json_line(report_));
-    if (result.status != INSITU_OK && report_.status == INSITU_OK) return fail(result.status, result.message);
+  if (report_.status != INSITU_OK) keep_error_text(report_.error.c_str());
+  try {
+    const insitu_status written = write_report();
+    if (report_.status == INSITU_OK) return written;
+  } catch (const std::bad_alloc&) {
+    if (report_.status == INSITU_OK) throw;  // otherwise the step's own error counts
   }
   return report_.status;
+}
+
+insitu_status Context::write_report() {
+  refresh_report();
+  if (report_path_.empty() || is_null()) return INSITU_OK;
+  const AppendResult result = append_line(report_path_, to_json_line(report_));
+  if (result.status == INSITU_OK || report_.status != INSITU_OK) return result.status;
+  return fail(result.status, result.message.c_str());
 }
 
 void Context::refresh_report() {

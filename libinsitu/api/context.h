@@ -2,6 +2,7 @@
 // the C API; each throws Error, which api.cpp turns into a status.
 #pragma once
 
+#include <array>
 #include <string>
 
 #include "api/handles.h"
@@ -84,20 +85,22 @@ class Context {
   // The first error of a step sticks.
   bool in_step() const { return in_step_; }
   insitu_status step_status() const { return report_.status; }
-  insitu_status fail(insitu_status status, std::string text) noexcept;
-  const char* error_text() const { return error_text_.c_str(); }
+  insitu_status fail(insitu_status status, const char* text) noexcept;
+  const char* error_text() const { return error_text_.data(); }
   void count_time(double seconds) { report_.total_s += in_step_ ? seconds : 0.0; }
 
  private:
   void need_step(const char* call) const;
   void need_commit(const char* call) const;
   bool is_null() const { return (flags_ & INSITU_CONTEXT_NULL) != 0; }
-  void log(std::int32_t level, const std::string& text) noexcept;
+  void log(std::int32_t level, const char* text) noexcept;
+  void keep_error_text(const char* text) noexcept;
   void warn(const std::string& text);
   void check_values(const GeometryObject& geometry);
   void build(GeometryObject& geometry);
   void refresh_scene();
   const Colormap& colormap_of(const Style& style);
+  insitu_status write_report();
   void refresh_report();
 
   const std::uint8_t number_;  // in the ids of this context's objects
@@ -109,7 +112,7 @@ class Context {
   void* log_user_ = nullptr;
   std::int32_t log_level_ = 0;
   std::string report_path_;
-  std::string error_text_;
+  std::array<char, 2048> error_text_{};
 
   HandleTable<GeometryObject> geometries_;
   HandleTable<Colormap> colormaps_;

@@ -16,8 +16,9 @@ class Reader {
   }
 
   kernels::ArrayView view(const insitu_array* array, std::uint32_t use, const std::string& name) {
-    const insitu_array copy = copy_in(array, "insitu_array");
+    if (array == nullptr) refuse(name + " is NULL");
     const std::string what = set_name_ + ": " + name;
+    const insitu_array copy = copy_of(array, what);
     if (order_ == ParticleOrder::permute && (copy.flags & INSITU_ARRAY_PERMUTABLE) == 0)
       throw Error(INSITU_ERROR_INVALID_ARGUMENT,
                   what + " is not marked INSITU_ARRAY_PERMUTABLE, which INSITU_ORDER_PERMUTE needs of every array");
@@ -30,6 +31,14 @@ class Reader {
   }
 
  private:
+  static insitu_array copy_of(const insitu_array* array, const std::string& what) {
+    try {
+      return copy_in(array, "insitu_array");
+    } catch (const Error& error) {
+      throw Error(error.status(), what + ": " + error.what());
+    }
+  }
+
   std::string set_name_;
   ParticleOrder order_;
   std::uint64_t count_ = 0;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 #include "core/error.h"
 
@@ -49,6 +50,7 @@ EmbreeBridge::EmbreeBridge() : state_(new State) {
   state_->device = rtcNewDevice(nullptr);
   if (state_->device == nullptr) {
     delete state_;
+    if (rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
     throw Error(INSITU_ERROR_INTERNAL, "Embree could not be started");
   }
 }
@@ -90,8 +92,9 @@ void EmbreeBridge::build(const std::vector<Bounds>& boxes) {
     rtcReleaseGeometry(geometry);
   }
   rtcCommitScene(state_->scene);
-  if (rtcGetDeviceError(state_->device) != RTC_ERROR_NONE)
-    throw Error(INSITU_ERROR_INTERNAL, "Embree could not build the scene");
+  const RTCError error = rtcGetDeviceError(state_->device);
+  if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+  if (error != RTC_ERROR_NONE) throw Error(INSITU_ERROR_INTERNAL, "Embree could not build the scene");
 }
 
 void EmbreeBridge::trace(const kernels::Ray& ray, Visit visit, void* state) const {

@@ -14,6 +14,7 @@ Light make_light(const insitu_light& description) {
   };
   if (description.kind != INSITU_LIGHT_AMBIENT && description.kind != INSITU_LIGHT_DIRECTIONAL)
     refuse("kind is neither INSITU_LIGHT_AMBIENT nor INSITU_LIGHT_DIRECTIONAL");
+  if ((description.flags & ~std::uint32_t{INSITU_LIGHT_IN_CAMERA_SPACE}) != 0) refuse("unknown flags");
   Light light;
   light.directional = description.kind == INSITU_LIGHT_DIRECTIONAL;
   light.in_camera_space = (description.flags & INSITU_LIGHT_IN_CAMERA_SPACE) != 0;

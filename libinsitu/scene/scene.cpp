@@ -71,7 +71,12 @@ void Scene::commit() {
   std::vector<Bounds> boxes;
   for (const Entry& entry : entries_) boxes.push_back(entry.bounds);
   if (!embree_) embree_ = std::make_unique<EmbreeBridge>();
-  embree_->build(boxes);
+  try {
+    embree_->build(boxes);
+  } catch (...) {
+    embree_.reset();  // a device that has run out of memory is not used again
+    throw;
+  }
 }
 
 void Scene::first_hits(const SceneRay* rays, SceneHit* hits, std::size_t count) const {

@@ -46,17 +46,23 @@ Style make_style(const insitu_style& description) {
   return style;
 }
 
-Colors::Colors(const Style& style, const Particles& particles, const Colormap& map)
-    : map_(&map), component_(style.component), uniform_(style.color) {
+void Colors::check(const Style& style, const Particles& particles) {
   if (!style.by_attribute) return;
-  values_ = particles.attribute(style.attribute);
-  if (values_ == nullptr)
+  const kernels::ArrayView* values = particles.attribute(style.attribute);
+  if (values == nullptr)
     throw Error(INSITU_ERROR_INVALID_ARGUMENT, particles.name() + ": there is no attribute '" + style.attribute +
                                                    "' to colour by; there are: " + particles.attribute_names());
-  if (component_ > values_->components)
+  if (style.component > values->components)
     throw Error(INSITU_ERROR_INVALID_ARGUMENT, particles.name() + ": attribute '" + style.attribute + "' has " +
-                                                   std::to_string(values_->components) + " components, not " +
-                                                   std::to_string(component_));
+                                                   std::to_string(values->components) + " components, not " +
+                                                   std::to_string(style.component));
+}
+
+Colors::Colors(const Style& style, const Particles& particles, const Colormap& map)
+    : map_(&map), component_(style.component), uniform_(style.color) {
+  check(style, particles);
+  if (!style.by_attribute) return;
+  values_ = particles.attribute(style.attribute);
   if (map.kind() == ColormapKind::categorical) return;
   range_ = style.fixed_range ? ValueRange{style.range[0], style.range[1]} : value_range(*values_, component_);
 }

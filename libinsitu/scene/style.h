@@ -26,8 +26,9 @@ Style make_style(const insitu_style& description);
 // Colours of a geometry in one step; borrows its arrays and the map.
 class Colors {
  public:
-  // Throws Error(invalid_argument) when the attribute does not exist; the text lists those that do.
-  // Reads the attribute once when the range is automatic: call within the workers.
+  // Throws Error(invalid_argument) when the attribute does not exist; the text lists those that do. Reads no values.
+  static void check(const Style& style, const Particles& particles);
+  // Checks first. Reads the attribute once when the range is automatic: call within the workers.
   Colors(const Style& style, const Particles& particles, const Colormap& map);
   Rgba of(std::uint64_t item) const;
   ValueRange range() const { return range_; }

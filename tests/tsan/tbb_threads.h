@@ -10,12 +10,14 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <exception>
 #include <functional>
 #include <list>
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <thread>
 #include <type_traits>
 #include <utility>
@@ -52,8 +54,13 @@ namespace threads_only {
 inline thread_local int arena_width = 0;  // 0: as many as the machine has
 inline thread_local int worker_index = 0;
 
+inline std::mutex limit_mutex;
+inline std::multiset<std::size_t> limits;  // of the global_controls that are alive
+
 inline int width() {
-  return arena_width > 0 ? arena_width : std::max(2, static_cast<int>(std::thread::hardware_concurrency()));
+  const int wanted = arena_width > 0 ? arena_width : std::max(2, static_cast<int>(std::thread::hardware_concurrency()));
+  const std::lock_guard lock(limit_mutex);
+  return limits.empty() ? wanted : std::min(wanted, static_cast<int>(*limits.begin()));
 }
 
 // Runs work(0) ... work(n - 1), each on a thread of its own but the first, and rethrows the first exception.
@@ -188,25 +195,65 @@ template <class T>
 class enumerable_thread_specific {
  public:
   using iterator = typename std::list<T>::iterator;
-  enumerable_thread_specific() : make_([] { return T{}; }) {}
-  template <class Make, class = std::enable_if_t<std::is_invocable_r_v<T, Make>>>
+  enumerable_thread_specific() : make_([] { return T(); }) {}
+  template <class Make>
+  requires std::is_invocable_r_v<T, Make>
   explicit enumerable_thread_specific(Make make) : make_(std::move(make)) {}
+  explicit enumerable_thread_specific(const T& exemplar) : make_([exemplar] { return exemplar; }) {}
+
+  // Each thread takes the lock once: a lock in every call would put the calls of all threads into an order.
   T& local() {
-    const std::lock_guard lock(mutex_);
-    auto [at, is_new] = of_thread_.try_emplace(std::this_thread::get_id(), nullptr);
-    if (is_new) at->second = &values_.emplace_back(make_());
-    return *at->second;
+    thread_local std::uint64_t owner = 0;
+    thread_local T* mine = nullptr;
+    if (owner != id_) {
+      const std::lock_guard lock(mutex_);
+      auto [at, is_new] = of_thread_.try_emplace(std::this_thread::get_id(), nullptr);
+      if (is_new) at->second = &values_.emplace_back(make_());
+      mine = at->second;
+      owner = id_;
+    }
+    return *mine;
   }
   iterator begin() { return values_.begin(); }
   iterator end() { return values_.end(); }
   std::size_t size() const { return values_.size(); }
 
  private:
+  static inline std::atomic<std::uint64_t> last_id_{0};
+  const std::uint64_t id_ = ++last_id_;
   std::function<T()> make_;
   std::mutex mutex_;
   std::map<std::thread::id, T*> of_thread_;
   std::list<T> values_;
 };
+
+class global_control {
+ public:
+  enum parameter { max_allowed_parallelism, thread_stack_size };
+  global_control(parameter what, std::size_t value) : what_(what), value_(value) {
+    const std::lock_guard lock(threads_only::limit_mutex);
+    if (what_ == max_allowed_parallelism) threads_only::limits.insert(value_);
+  }
+  ~global_control() {
+    const std::lock_guard lock(threads_only::limit_mutex);
+    if (what_ == max_allowed_parallelism) threads_only::limits.erase(threads_only::limits.find(value_));
+  }
+  global_control(const global_control&) = delete;
+  global_control& operator=(const global_control&) = delete;
+  static std::size_t active_value(parameter what) {
+    const std::lock_guard lock(threads_only::limit_mutex);
+    if (what == thread_stack_size) return std::size_t{8} << 20;
+    return threads_only::limits.empty() ? std::thread::hardware_concurrency() : *threads_only::limits.begin();
+  }
+
+ private:
+  parameter what_;
+  std::size_t value_;
+};
+
+namespace info {
+inline int default_concurrency() { return static_cast<int>(std::thread::hardware_concurrency()); }
+}  // namespace info
 
 }  // namespace tbb
 

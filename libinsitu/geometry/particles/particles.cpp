@@ -24,17 +24,20 @@ constexpr std::uint64_t most_for_32_bits = std::uint64_t{1} << 32;
 bool is_integer(kernels::Scalar type) { return type != kernels::Scalar::f32 && type != kernels::Scalar::f64; }
 
 // Half the edge of the cube that a particle has for itself in the bounding box; flat directions do not count.
-double automatic_radius(const ScanResult& scan) {
-  double volume = 1.0;
+double automatic_radius(const ScanResult& scan, double without_extent) {
+  double sides[3];
   int dimensions = 0;
   for (int c = 0; c < 3; ++c) {
     const double side = scan.upper[c] - scan.lower[c];
     if (!(side > 0.0)) continue;
-    volume *= side;
-    ++dimensions;
+    sides[dimensions++] = side;
   }
-  if (scan.drawn == 0 || dimensions == 0) return 1.0;
-  return 0.5 * std::pow(volume / static_cast<double>(scan.drawn), 1.0 / dimensions);
+  if (scan.drawn == 0 || dimensions == 0) return without_extent;
+  // Root by root: products of sides may be too small or large for a double.
+  const double root = 1.0 / dimensions;
+  double radius = 0.5 * std::pow(static_cast<double>(scan.drawn), -root);
+  for (int i = 0; i < dimensions; ++i) radius *= std::pow(sides[i], root);
+  return radius;
 }
 
 RadiusView radius_view(const ParticleArrays& arrays) {
@@ -92,7 +95,7 @@ void Particles::build(Budget& budget) {
   const bool automatic = tree_.radius.kind == RadiusView::Kind::uniform && tree_.radius.uniform == 0.0;
   ScanResult scan = scan_particles(tree_, !automatic);
   if (automatic) {
-    tree_.radius.uniform = automatic_radius(scan) * arrays.radius_scale;
+    tree_.radius.uniform = automatic_radius(scan, 1.0 / arrays.position_scale) * arrays.radius_scale;
     scan.radius_max = tree_.radius.uniform;
   }
   std::copy_n(scan.lower, 3, tree_.lower);

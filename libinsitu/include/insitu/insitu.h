@@ -25,9 +25,9 @@
 #include <string.h>
 
 #if defined(_WIN32)
-#  define INSITU_API
+#define INSITU_API
 #else
-#  define INSITU_API __attribute__((visibility("default")))
+#define INSITU_API __attribute__((visibility("default")))
 #endif
 
 #ifdef __cplusplus
@@ -62,14 +62,14 @@ enum {
 /* Version of the loaded library's binary interface; equals INSITU_ABI when header and library fit. */
 INSITU_API uint32_t insitu_abi_version(void);
 /* "0.1.0 (...)": version and the SIMD targets compiled in. Static storage. */
-INSITU_API const char *insitu_version_text(void);
+INSITU_API const char* insitu_version_text(void);
 /* "invalid_argument" for INSITU_ERROR_INVALID_ARGUMENT and so on; "unknown" for other numbers. Static storage. */
-INSITU_API const char *insitu_status_name(insitu_status status);
+INSITU_API const char* insitu_status_name(insitu_status status);
 
 /* ------------------------------------------------------------------------------------------------------- context -- */
 
 /* Everything lives in a context; contexts know nothing of each other and may live side by side. */
-typedef struct insitu_context_s *insitu_context;
+typedef struct insitu_context_s* insitu_context;
 
 enum {
   INSITU_CHECK_POINTERS = 0, /* descriptors only (default). Non-finite positions are skipped at every level. */
@@ -93,35 +93,27 @@ typedef struct insitu_context_desc {
 
 /* Creates a context. `desc` may be NULL (all defaults). On failure `*out` is NULL and insitu_error_text(NULL) has the
  * reason. Errors: invalid_argument, abi, out_of_memory. */
-INSITU_API insitu_status insitu_context_create(const insitu_context_desc *desc, insitu_context *out);
+INSITU_API insitu_status insitu_context_create(const insitu_context_desc* desc, insitu_context* out);
 /* Frees the context and all it owns; NULL is allowed. Borrowed arrays are not touched. */
 INSITU_API void insitu_context_destroy(insitu_context context);
 
 enum { INSITU_LOG_ERROR = 1, INSITU_LOG_WARNING = 2, INSITU_LOG_INFO = 3 };
-typedef void (*insitu_log_fn)(void *user, int32_t level, const char *text);
+typedef void (*insitu_log_fn)(void* user, int32_t level, const char* text);
 /* Messages up to `level` go to `fn` on the calling thread; `fn` NULL switches them off (the default: the library never
  * prints). `text` lives for the duration of the callback. */
-INSITU_API insitu_status insitu_context_set_log(insitu_context context, insitu_log_fn fn, void *user, int32_t level);
+INSITU_API insitu_status insitu_context_set_log(insitu_context context, insitu_log_fn fn, void* user, int32_t level);
 
 /* Text of the last error of this context, or with NULL of the last failed insitu_context_create of this thread. Never
  * NULL; valid until the next call that fails on this context. */
-INSITU_API const char *insitu_error_text(insitu_context context);
+INSITU_API const char* insitu_error_text(insitu_context context);
 
 /* One JSON object per step is appended to the file `path` at each insitu_step_end (docs/report.md lists its members);
  * NULL stops it. The file is opened, appended and closed per step. Errors: invalid_argument, io. */
-INSITU_API insitu_status insitu_context_set_report(insitu_context context, const char *path);
+INSITU_API insitu_status insitu_context_set_report(insitu_context context, const char* path);
 
 /* -------------------------------------------------------------------------------------------------------- arrays -- */
 
-enum {
-  INSITU_F32 = 1,
-  INSITU_F64 = 2,
-  INSITU_I32 = 3,
-  INSITU_I64 = 4,
-  INSITU_U8 = 5,
-  INSITU_U32 = 6,
-  INSITU_U64 = 7
-};
+enum { INSITU_F32 = 1, INSITU_F64 = 2, INSITU_I32 = 3, INSITU_I64 = 4, INSITU_U8 = 5, INSITU_U32 = 6, INSITU_U64 = 7 };
 
 enum {
   INSITU_ARRAY_PERMUTABLE = 1u,  /* the library may change the order of the items (never their values) */
@@ -142,7 +134,7 @@ typedef struct insitu_array {
   uint32_t flags;      /* INSITU_ARRAY_* */
   uint64_t count;      /* items; 0 with NULL pointers is a normal, empty array */
   int64_t stride_bytes;
-  void *component[4]; /* constant data is passed through a cast: only PERMUTABLE arrays are ever written */
+  void* component[4]; /* constant data is passed through a cast: only PERMUTABLE arrays are ever written */
   uint64_t tail_bytes;
 } insitu_array;
 
@@ -158,48 +150,58 @@ typedef struct insitu_array_report {
 
 /* Says without side effects whether an array can be used for `use` (INSITU_USE_*) and at what cost. `out` may be NULL.
  * Returns the same status as out->status. */
-INSITU_API insitu_status insitu_array_check(const insitu_array *array, uint32_t use, insitu_array_report *out);
+INSITU_API insitu_status insitu_array_check(const insitu_array* array, uint32_t use, insitu_array_report* out);
 
 /* ----------------------------------------------------------------------------------------------------- particles -- */
 
 /* Children of a context. 0 is never a valid id. Stale and foreign ids are reported as invalid_handle. */
-typedef struct insitu_geometry { uint64_t id; } insitu_geometry;
-typedef struct insitu_colormap { uint64_t id; } insitu_colormap;
-typedef struct insitu_view { uint64_t id; } insitu_view;
-typedef struct insitu_image { uint64_t id; } insitu_image;
+typedef struct insitu_geometry {
+  uint64_t id;
+} insitu_geometry;
+typedef struct insitu_colormap {
+  uint64_t id;
+} insitu_colormap;
+typedef struct insitu_view {
+  uint64_t id;
+} insitu_view;
+typedef struct insitu_image {
+  uint64_t id;
+} insitu_image;
 
 enum {
-  INSITU_ORDER_INDEX = 0,   /* nothing moves; a permutation index of 4 bytes per particle (8 past 2^32) beside the data */
-  INSITU_ORDER_PERMUTE = 1, /* all arrays named in the descriptor are permuted together in place: 0 bytes per particle */
-  INSITU_ORDER_COPY = 2     /* positions are copied in tree order: 16 bytes per particle (32 for f64), fastest */
+  INSITU_ORDER_INDEX = 0, /* nothing moves; a permutation index of 4 bytes per particle (8 past 2^32) beside the data */
+  INSITU_ORDER_PERMUTE =
+      1,                /* all arrays named in the descriptor are permuted together in place: 0 bytes per particle */
+  INSITU_ORDER_COPY = 2 /* positions are copied in tree order: 16 bytes per particle (32 for f64), fastest */
 };
 
 enum {
-  INSITU_PARTICLES_KEEP_PERMUTATION = 1u /* with PERMUTE: keep who came from where (4 bytes per particle, 8 past 2^32) */
+  INSITU_PARTICLES_KEEP_PERMUTATION =
+      1u /* with PERMUTE: keep who came from where (4 bytes per particle, 8 past 2^32) */
 };
 
 /* A named array with one item per particle; the struct itself never grows. */
 typedef struct insitu_attribute {
-  const char *name;
-  const insitu_array *values;
+  const char* name;
+  const insitu_array* values;
 } insitu_attribute;
 
 typedef struct insitu_particles_desc {
   uint32_t struct_size;
   uint32_t order;               /* INSITU_ORDER_*; fixed at creation */
-  const char *name;             /* for messages and the report; NULL = "particles"; fixed at creation */
-  const insitu_array *position; /* 3 x f32 | f64 | i32 | u32; NULL at creation: only declares */
+  const char* name;             /* for messages and the report; NULL = "particles"; fixed at creation */
+  const insitu_array* position; /* 3 x f32 | f64 | i32 | u32; NULL at creation: only declares */
   double position_scale;        /* integer positions: world = origin + scale * value; 0 = 1 */
   double position_origin[3];    /* integer positions only */
-  const insitu_array *radius;   /* 1 x f32 | f64, one per particle; or NULL */
-  const insitu_array *type;     /* 1 x integer, one per particle; needed by type_radius; or NULL */
-  const double *type_radius;    /* radius of type 0, 1, ...; used where `radius` is NULL; types outside are skipped */
+  const insitu_array* radius;   /* 1 x f32 | f64, one per particle; or NULL */
+  const insitu_array* type;     /* 1 x integer, one per particle; needed by type_radius; or NULL */
+  const double* type_radius;    /* radius of type 0, 1, ...; used where `radius` is NULL; types outside are skipped */
   uint64_t type_radius_count;
   double radius_default; /* one radius for all; 0 = half the mean spacing in the bounding box */
   double radius_scale;   /* factor on every radius; 0 = 1 */
-  const insitu_attribute *attributes;
+  const insitu_attribute* attributes;
   uint64_t attribute_count;
-  const insitu_array *const *payload; /* arrays that only have to move along under PERMUTE (velocities, ids, ...) */
+  const insitu_array* const* payload; /* arrays that only have to move along under PERMUTE (velocities, ids, ...) */
   uint64_t payload_count;
   uint32_t flags;    /* INSITU_PARTICLES_* */
   uint32_t reserved; /* 0 */
@@ -208,20 +210,20 @@ typedef struct insitu_particles_desc {
 /* Declares a set of particles; with arrays in `desc` (inside a step) it also updates it.
  * With INSITU_ORDER_PERMUTE every array of the descriptor needs INSITU_ARRAY_PERMUTABLE.
  * Errors: invalid_argument, wrong_state (arrays outside of a step), out_of_memory. */
-INSITU_API insitu_status insitu_particles_create(insitu_context context, const insitu_particles_desc *desc,
-                                                 insitu_geometry *out);
+INSITU_API insitu_status insitu_particles_create(insitu_context context, const insitu_particles_desc* desc,
+                                                 insitu_geometry* out);
 /* Binds this step's arrays, borrowed until insitu_step_end. All arrays have position->count items. A set that is not
  * updated in a step is absent from that step's pictures. Particles with a non-finite position, a magnitude above 1e100,
  * or a negative, zero or non-finite radius are not drawn; they are counted and reported.
  * Errors: invalid_argument, invalid_handle, wrong_state. */
 INSITU_API insitu_status insitu_particles_update(insitu_context context, insitu_geometry particles,
-                                                 const insitu_particles_desc *desc);
+                                                 const insitu_particles_desc* desc);
 /* After insitu_commit: original[i] = the place that the particle now at place i of the tree's order had when the step
  * began. With PERMUTE that is the order of the arrays (needs KEEP_PERMUTATION), otherwise that of the index or copy.
  * `count` is the number of entries of `original`; skipped particles stand at the end.
  * Errors: wrong_state (not committed, or not kept), invalid_argument (count too small). */
 INSITU_API insitu_status insitu_particles_permutation(insitu_context context, insitu_geometry particles,
-                                                      uint64_t *original, uint64_t count);
+                                                      uint64_t* original, uint64_t count);
 /* With PERMUTE and KEEP_PERMUTATION, after insitu_commit and before insitu_step_end: puts every record of every array
  * back where it was when the step began. The set is then absent until its next update. */
 INSITU_API insitu_status insitu_particles_restore_order(insitu_context context, insitu_geometry particles);
@@ -231,20 +233,20 @@ enum { INSITU_RANGE_AUTO = 0, INSITU_RANGE_FIXED = 1 };
 
 typedef struct insitu_style {
   uint32_t struct_size;
-  uint32_t color_by;        /* INSITU_COLOR_* */
-  const char *attribute;    /* name of the attribute that gives the colour; the type array is called "type" */
-  uint32_t component;       /* 0 = the value, or the length of a vector; 1 to 4 = that component */
-  uint32_t range_mode;      /* INSITU_RANGE_*; AUTO = smallest to largest finite value of the step */
-  double range[2];          /* values at the two ends of the colour map, with INSITU_RANGE_FIXED */
-  const char *colormap;     /* "viridis" (default), "inferno", "coolwarm", "categorical", "elements" */
-  insitu_colormap own_map;  /* used instead of `colormap` when its id is not 0 */
-  double color[3];          /* linear RGB 0..1 of INSITU_COLOR_UNIFORM; all 0 = 0.8 grey */
+  uint32_t color_by;       /* INSITU_COLOR_* */
+  const char* attribute;   /* name of the attribute that gives the colour; the type array is called "type" */
+  uint32_t component;      /* 0 = the value, or the length of a vector; 1 to 4 = that component */
+  uint32_t range_mode;     /* INSITU_RANGE_*; AUTO = smallest to largest finite value of the step */
+  double range[2];         /* values at the two ends of the colour map, with INSITU_RANGE_FIXED */
+  const char* colormap;    /* "viridis" (default), "inferno", "coolwarm", "categorical", "elements" */
+  insitu_colormap own_map; /* used instead of `colormap` when its id is not 0 */
+  double color[3];         /* linear RGB 0..1 of INSITU_COLOR_UNIFORM; all 0 = 0.8 grey */
 } insitu_style;
 
 /* How a geometry looks; kept until changed. An unknown attribute name is an error at the next commit or at this call
  * when arrays are bound; the message lists the valid names. An unknown colour map likewise, at this call. */
 INSITU_API insitu_status insitu_geometry_set_style(insitu_context context, insitu_geometry geometry,
-                                                   const insitu_style *style);
+                                                   const insitu_style* style);
 /* Bounds of the drawn items, radii included, after insitu_commit; lower > upper when nothing is drawn. */
 INSITU_API insitu_status insitu_geometry_bounds(insitu_context context, insitu_geometry geometry, double lower[3],
                                                 double upper[3]);
@@ -254,14 +256,14 @@ enum { INSITU_COLORMAP_CONTINUOUS = 0, INSITU_COLORMAP_CATEGORICAL = 1 };
 
 typedef struct insitu_colormap_desc {
   uint32_t struct_size;
-  uint32_t kind;           /* INSITU_COLORMAP_*: interpolated, or colour number (value mod count) */
-  const double *rgba;      /* 4 x count: sRGB 0..1 and opacity, evenly spaced; copied */
-  uint64_t count;          /* at least 1 */
+  uint32_t kind;      /* INSITU_COLORMAP_*: interpolated, or colour number (value mod count) */
+  const double* rgba; /* 4 x count: sRGB 0..1 and opacity, evenly spaced; copied */
+  uint64_t count;     /* at least 1 */
 } insitu_colormap_desc;
 
 /* A transfer function of the caller's own. */
-INSITU_API insitu_status insitu_colormap_create(insitu_context context, const insitu_colormap_desc *desc,
-                                                insitu_colormap *out);
+INSITU_API insitu_status insitu_colormap_create(insitu_context context, const insitu_colormap_desc* desc,
+                                                insitu_colormap* out);
 INSITU_API insitu_status insitu_colormap_destroy(insitu_context context, insitu_colormap colormap);
 
 /* ---------------------------------------------------------------------------------------------------------- view -- */
@@ -307,20 +309,20 @@ typedef struct insitu_effects {
 typedef struct insitu_view_desc {
   uint32_t struct_size;
   uint32_t light_count;          /* 0 = a key light from above the camera and ambient light */
-  const insitu_camera *camera;   /* NULL = fitted to the data at the first render */
-  const insitu_effects *effects; /* NULL = none */
-  const insitu_light *lights;
-  double background[4];          /* linear RGB and opacity; all 0 = opaque white */
+  const insitu_camera* camera;   /* NULL = fitted to the data at the first render */
+  const insitu_effects* effects; /* NULL = none */
+  const insitu_light* lights;
+  double background[4]; /* linear RGB and opacity; all 0 = opaque white */
 } insitu_view_desc;
 
 /* `desc` may be NULL: a fitted perspective camera, default lights, no effects, white background. */
-INSITU_API insitu_status insitu_view_create(insitu_context context, const insitu_view_desc *desc, insitu_view *out);
-INSITU_API insitu_status insitu_view_set_camera(insitu_context context, insitu_view view, const insitu_camera *camera);
-INSITU_API insitu_status insitu_view_get_camera(insitu_context context, insitu_view view, insitu_camera *camera);
+INSITU_API insitu_status insitu_view_create(insitu_context context, const insitu_view_desc* desc, insitu_view* out);
+INSITU_API insitu_status insitu_view_set_camera(insitu_context context, insitu_view view, const insitu_camera* camera);
+INSITU_API insitu_status insitu_view_get_camera(insitu_context context, insitu_view view, insitu_camera* camera);
 INSITU_API insitu_status insitu_view_set_effects(insitu_context context, insitu_view view,
-                                                 const insitu_effects *effects);
+                                                 const insitu_effects* effects);
 /* Replaces all lights; count 0 brings the default ones back. */
-INSITU_API insitu_status insitu_view_set_lights(insitu_context context, insitu_view view, const insitu_light *lights,
+INSITU_API insitu_status insitu_view_set_lights(insitu_context context, insitu_view view, const insitu_light* lights,
                                                 uint64_t count);
 /* Linear RGB and opacity (0: the background is left out and the image carries alpha). */
 INSITU_API insitu_status insitu_view_set_background(insitu_context context, insitu_view view, const double rgba[4]);
@@ -350,19 +352,20 @@ typedef struct insitu_image_desc {
   uint32_t reserved;          /* 0 */
 } insitu_image_desc;
 
-/* `desc` may be NULL: all defaults. Errors: invalid_argument, over_budget, out_of_memory. */
-INSITU_API insitu_status insitu_image_create(insitu_context context, const insitu_image_desc *desc, insitu_image *out);
+/* Errors: invalid_argument, over_budget, out_of_memory. */
+INSITU_API insitu_status insitu_image_create(insitu_context context, const insitu_image_desc* desc, insitu_image* out);
 /* Renders all committed geometries. The picture depends on the data, the view and the image alone: not on the number of
  * threads, the SIMD target of the machine or the order of the particles. Errors: wrong_state (nothing committed). */
 INSITU_API insitu_status insitu_render(insitu_context context, insitu_view view, insitu_image image);
 /* Writes ".png" (sRGB, colour only) or ".exr" (linear, every channel of the image). `pattern` may hold {step}, or
- * {step:6} for zero padding to six digits, {time} or {time:3} for three digits behind the point, and {{ for a brace. The file appears under a temporary name in the same folder and is renamed
- * when it is complete. Errors: io (the text names the file and the reason), unsupported (other endings). */
-INSITU_API insitu_status insitu_image_write(insitu_context context, insitu_image image, const char *pattern);
+ * {step:6} for zero padding to six digits, {time} or {time:3} for three digits behind the point, and {{ for a brace.
+ * The file appears under a temporary name in the same folder and is renamed when it is complete. Errors: io (the text
+ * names the file and the reason), unsupported (other endings). */
+INSITU_API insitu_status insitu_image_write(insitu_context context, insitu_image image, const char* pattern);
 /* A view of the library's own pixels, row by row from the top; valid until the next render into or destruction of this
  * image. `channel` is one INSITU_CHANNEL_*. */
 INSITU_API insitu_status insitu_image_channel(insitu_context context, insitu_image image, uint32_t channel,
-                                              insitu_array *out);
+                                              insitu_array* out);
 INSITU_API insitu_status insitu_image_destroy(insitu_context context, insitu_image image);
 
 /* ---------------------------------------------------------------------------------------------------------- step -- */
@@ -389,18 +392,19 @@ typedef struct insitu_stats {
   double build_s;          /* wall time in seconds, summed over the step's calls */
   double render_s;
   double write_s;
-  double total_s;          /* inside of library calls, from step_begin to step_end */
+  double total_s; /* inside of library calls, from step_begin to step_end */
 } insitu_stats;
 
-INSITU_API insitu_status insitu_stats_get(insitu_context context, insitu_stats *out);
+INSITU_API insitu_status insitu_stats_get(insitu_context context, insitu_stats* out);
 
-/* --------------------------------------------------------------------------------------------------- initialisers -- */
+/* --------------------------------------------------------------------------------------------------- initialisers --
+ */
 /* In the header, so that they set the size that the caller was compiled with. */
 
-#define INSITU_DEFINE_INIT(type)                         \
-  static inline void type##_init(type *object) {         \
-    memset(object, 0, sizeof *object);                   \
-    object->struct_size = (uint32_t)sizeof *object;      \
+#define INSITU_DEFINE_INIT(type)                    \
+  static inline void type##_init(type* object) {    \
+    memset(object, 0, sizeof *object);              \
+    object->struct_size = (uint32_t)sizeof *object; \
   }
 INSITU_DEFINE_INIT(insitu_array)
 INSITU_DEFINE_INIT(insitu_array_report)
@@ -415,14 +419,14 @@ INSITU_DEFINE_INIT(insitu_image_desc)
 INSITU_DEFINE_INIT(insitu_stats)
 #undef INSITU_DEFINE_INIT
 
-static inline void insitu_context_desc_init(insitu_context_desc *object) {
+static inline void insitu_context_desc_init(insitu_context_desc* object) {
   memset(object, 0, sizeof *object);
   object->struct_size = (uint32_t)sizeof *object;
   object->abi = INSITU_ABI;
 }
 
 /* Records in memory, `stride_bytes` apart (0 = packed): insitu_array_records(INSITU_F64, 3, x, n, 0). */
-static inline insitu_array insitu_array_records(uint32_t type, uint32_t components, const void *first, uint64_t count,
+static inline insitu_array insitu_array_records(uint32_t type, uint32_t components, const void* first, uint64_t count,
                                                 int64_t stride_bytes) {
   insitu_array array;
   insitu_array_init(&array);
@@ -430,16 +434,16 @@ static inline insitu_array insitu_array_records(uint32_t type, uint32_t componen
   array.components = components;
   array.count = count;
   array.stride_bytes = stride_bytes;
-  array.component[0] = (void *)(uintptr_t)first;
+  array.component[0] = (void*)(uintptr_t)first;
   return array;
 }
 
 /* Three columns x, y, z of packed scalars. */
-static inline insitu_array insitu_array_columns(uint32_t type, const void *x, const void *y, const void *z,
+static inline insitu_array insitu_array_columns(uint32_t type, const void* x, const void* y, const void* z,
                                                 uint64_t count) {
   insitu_array array = insitu_array_records(type, 3, x, count, 0);
-  array.component[1] = (void *)(uintptr_t)y;
-  array.component[2] = (void *)(uintptr_t)z;
+  array.component[1] = (void*)(uintptr_t)y;
+  array.component[2] = (void*)(uintptr_t)z;
   return array;
 }
 
