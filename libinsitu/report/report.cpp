@@ -2,6 +2,7 @@
 
 #include <array>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 namespace insitu {
 
@@ -20,29 +21,57 @@ std::string_view report_status_name(insitu_status status) {
   return status >= 0 && static_cast<size_t>(status) < names.size() ? names[static_cast<size_t>(status)] : "unknown";
 }
 
+namespace {
+
+// Scalars are the library's to write: escapes, UTF-8, the shortest numbers, null for those that are not finite. Objects
+// and arrays are put together here: nlohmann's destructors of these allocate, and end the process when memory is short.
+std::string scalar(const nlohmann::json& value) {
+  return value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+std::string member(std::string_view name, const std::string& value) { return scalar(name) + ":" + value; }
+
+std::string joined(char open, const std::vector<std::string>& parts, char close) {
+  std::string text(1, open);
+  for (const std::string& part : parts) text.append(text.size() == 1 ? "" : ",").append(part);
+  return text + close;
+}
+
+std::string object(const std::vector<std::string>& members) { return joined('{', members, '}'); }
+
+std::string strings(const std::vector<std::string>& values) {
+  std::vector<std::string> parts;
+  for (const std::string& value : values) parts.push_back(scalar(value));
+  return joined('[', parts, ']');
+}
+
+std::string list_of(const std::vector<EffectCost>& effects) {
+  std::vector<std::string> parts;
+  for (const EffectCost& effect : effects)
+    parts.push_back(object({member("name", scalar(effect.name)), member("rays", scalar(effect.rays)),
+                            member("seconds", scalar(effect.seconds))}));
+  return joined('[', parts, ']');
+}
+
+}  // namespace
+
 std::string to_json_line(const StepReport& report) {
-  using nlohmann::ordered_json;
-  ordered_json effects = ordered_json::array();
-  for (const EffectCost& effect : report.effects) {
-    effects.push_back({{"name", effect.name}, {"rays", effect.rays}, {"seconds", effect.seconds}});
-  }
-  ordered_json line;
-  line["step"] = report.step;
-  line["time"] = report.time;
-  line["images"] = report.images;
-  line["seconds"] = {
-      {"build", report.build_s}, {"render", report.render_s}, {"write", report.write_s}, {"total", report.total_s}};
-  line["bytes"] = {{"borrowed", report.bytes_borrowed},
-                   {"copied", report.bytes_copied},
-                   {"owned", report.bytes_owned},
-                   {"peak", report.bytes_peak}};
-  line["items"] = {{"total", report.items_total}, {"skipped", report.items_skipped}};
-  line["effects"] = std::move(effects);
-  line["warnings"] = report.warnings;
-  line["status"] = report_status_name(report.status);
-  if (report.status != INSITU_OK) line["error"] = report.error;
-  // The writer itself turns numbers that are not finite into null.
-  return line.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  std::vector<std::string> members = {
+      member("step", scalar(report.step)),
+      member("time", scalar(report.time)),
+      member("images", strings(report.images)),
+      member("seconds", object({member("build", scalar(report.build_s)), member("render", scalar(report.render_s)),
+                                member("write", scalar(report.write_s)), member("total", scalar(report.total_s))})),
+      member("bytes",
+             object({member("borrowed", scalar(report.bytes_borrowed)), member("copied", scalar(report.bytes_copied)),
+                     member("owned", scalar(report.bytes_owned)), member("peak", scalar(report.bytes_peak))})),
+      member("items",
+             object({member("total", scalar(report.items_total)), member("skipped", scalar(report.items_skipped))})),
+      member("effects", list_of(report.effects)),
+      member("warnings", strings(report.warnings)),
+      member("status", scalar(report_status_name(report.status)))};
+  if (report.status != INSITU_OK) members.push_back(member("error", scalar(report.error)));
+  return object(members);
 }
 
 }  // namespace insitu
