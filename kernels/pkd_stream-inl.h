@@ -3,8 +3,9 @@
 //
 // A stream holds the rays of one octant, for which near and far are the same sides everywhere. At a split the list of
 // rays is divided into those that enter the near and those that enter the far side, without a branch on the data; in a
-// leaf SIMD runs over particles and the loop over rays. (Streams of rays that are filtered on the way down: Tsakok,
-// "Faster incoherent rays: Multi-BVH ray stream tracing", HPG 2009; there in a BVH.)
+// leaf SIMD runs over particles and the loop over rays. The streams of the eight octants take turns, a step each: what
+// a step reads has been asked for from memory seven steps before. (Streams of rays that are filtered on the way down:
+// Tsakok, "Faster incoherent rays: Multi-BVH ray stream tracing", HPG 2009; there in a BVH.)
 #if defined(INSITU_KERNELS_PKD_STREAM_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef INSITU_KERNELS_PKD_STREAM_INL_H_
 #undef INSITU_KERNELS_PKD_STREAM_INL_H_
@@ -41,9 +42,11 @@ class AnyHitStream {
         margin_(margin),
         rays_(rays),
         occluded_(occluded),
+        lists_(Levels(tree.count) + 3),
         lanes_(new RayLanes[most_rays]),
-        entries_(new StreamEntry[most_rays * (Levels(tree.count) + 3)]),
-        crossing_(new std::uint32_t[most_rays]) {
+        entries_(new StreamEntry[most_rays * lists_]),
+        crossing_(new std::uint32_t[most_rays]),
+        walks_(new Walk[8]) {
     uniform_ = tree.radius.kind == RadiusView::Kind::uniform;
   }
 
@@ -68,19 +71,34 @@ class AnyHitStream {
       ++sizes[octants[i]];
     }
     first_ray_ = begin;
+    Walk* active[8];
+    std::size_t active_count = 0;
+    StreamEntry* entries = entries_.get();
     for (std::uint8_t octant = 0; octant < 8; ++octant) {
       if (sizes[octant] == 0) continue;
-      std::size_t n = 0;
+      Walk& walk = walks_[octant];
+      walk.height = 0;
+      walk.now = {0, tree_.count, RootBox<Key>(tree_), entries, 0};
+      for (int c = 0; c < 3; ++c) walk.negative[c] = (octant >> c & 1) != 0;
       for (std::size_t i = 0; i < count; ++i)
-        if (octants[i] == octant) entries_[n++] = {0.0f, lanes_[i].t_high, static_cast<std::uint32_t>(i)};
-      const bool negative[3] = {(octant & 1) != 0, (octant & 2) != 0, (octant & 4) != 0};
-      Traverse(negative, n);
+        if (octants[i] == octant)
+          entries[walk.now.ray_count++] = {0.0f, lanes_[i].t_high, static_cast<std::uint32_t>(i)};
+      entries += sizes[octant] * lists_;
+      active[active_count++] = &walk;
+    }
+    for (std::size_t next = 0; active_count != 0;) {
+      if (Step(*active[next])) {
+        ++next;
+      } else {
+        active[next] = active[--active_count];
+      }
+      if (next >= active_count) next = 0;
     }
   }
 
  private:
-  // A ray in f32, relative to the point where it enters the tree (see TreeMargin), all of it within two cache lines.
-  struct RayLanes {
+  // A ray in f32, relative to the point where it enters the tree (see TreeMargin): one cache line.
+  struct alignas(64) RayLanes {
     float origin[3];
     float direction[3];
     float inverse[3];
@@ -95,6 +113,14 @@ class AnyHitStream {
     PkdBox<Key> box;
     StreamEntry* rays;
     std::size_t ray_count;
+  };
+
+  // Where a stream is on its way through the tree.
+  struct Walk {
+    Node stack[64];
+    int height;
+    Node now;
+    bool negative[3];
   };
 
   static std::size_t Levels(std::uint64_t particles) {
@@ -118,41 +144,49 @@ class AnyHitStream {
     return true;
   }
 
-  HWY_INLINE void Traverse(const bool negative[3], std::size_t count) {
-    Node stack[64];
-    int height = 0;
-    Node now{0, tree_.count, RootBox<Key>(tree_), entries_.get(), count};
-    for (;;) {
-      while (now.ray_count != 0 && now.end - now.begin > pkd_leaf_size && !now.box.is_point()) {
-        const int axis = now.box.split_axis();
-        const std::uint64_t mid = now.begin + (now.end - now.begin) / 2;
-        const Key plane = positions_.key(mid, axis);
-        positions_.prefetch(now.begin + (mid - now.begin) / 2);
-        positions_.prefetch(mid + 1 + (now.end - mid - 1) / 2);
-        Node far = now;
-        std::size_t crossing = 0;
-        Split(now, static_cast<float>(plane), axis, far, crossing);
-        if (negative[axis]) {
-          far.end = mid;
-          far.box.upper[axis] = plane;
-          now.begin = mid + 1;
-          now.box.lower[axis] = plane;
-        } else {
-          far.begin = mid + 1;
-          far.box.lower[axis] = plane;
-          now.end = mid;
-          now.box.upper[axis] = plane;
-        }
-        if (crossing != 0) VisitCrossed(mid, crossing);
-        if (now.ray_count == 0) {
-          now = far;
-        } else if (far.ray_count != 0) {
-          stack[height++] = far;
-        }
+  // A split, or a leaf and the way back from it. False: this stream has seen the whole tree.
+  HWY_INLINE bool Step(Walk& walk) {
+    Node& now = walk.now;
+    if (now.ray_count != 0 && now.end - now.begin > pkd_leaf_size && !now.box.is_point()) {
+      const int axis = now.box.split_axis();
+      const std::uint64_t mid = now.begin + (now.end - now.begin) / 2;
+      const Key plane = positions_.key(mid, axis);
+      Node far = now;
+      std::size_t crossing = 0;
+      Split(now, static_cast<float>(plane), axis, far, crossing);
+      if (walk.negative[axis]) {
+        far.end = mid;
+        far.box.upper[axis] = plane;
+        now.begin = mid + 1;
+        now.box.lower[axis] = plane;
+      } else {
+        far.begin = mid + 1;
+        far.box.lower[axis] = plane;
+        now.end = mid;
+        now.box.upper[axis] = plane;
       }
+      if (crossing != 0) VisitCrossed(mid, crossing);
+      if (now.ray_count == 0) {
+        now = far;
+      } else if (far.ray_count != 0) {
+        walk.stack[walk.height++] = far;
+      }
+    } else {
       if (now.ray_count != 0 && now.end > now.begin) VisitRun(now);
-      if (height == 0) return;
-      now = stack[--height];
+      if (walk.height == 0) return false;
+      now = walk.stack[--walk.height];
+    }
+    Prefetch(now.begin, now.end);
+    return true;
+  }
+
+  // What a subtree reads first: the particle in the middle, or a whole leaf.
+  HWY_INLINE void Prefetch(std::uint64_t begin, std::uint64_t end) const {
+    if (end - begin > pkd_leaf_size) {
+      positions_.prefetch(begin + (end - begin) / 2);
+    } else {
+      constexpr std::uint64_t per_line = 5;  // particles, of 12 bytes
+      for (std::uint64_t place = begin; place < end; place += per_line) positions_.prefetch(place);
     }
   }
 
@@ -279,9 +313,11 @@ class AnyHitStream {
   const TreeMargin margin_;
   const Ray* rays_;
   std::uint8_t* occluded_;
+  const std::size_t lists_;  // as many as there are levels, each of at most all rays
   std::unique_ptr<RayLanes[]> lanes_;
   std::unique_ptr<StreamEntry[]> entries_;
   std::unique_ptr<std::uint32_t[]> crossing_;
+  std::unique_ptr<Walk[]> walks_;
   std::size_t first_ray_ = 0;
   bool uniform_;
 };

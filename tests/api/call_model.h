@@ -51,28 +51,26 @@ class CallModel {
   insitu_status needs_step() const { return in_step ? INSITU_OK : INSITU_ERROR_WRONG_STATE; }
   insitu_status needs_commit() const { return in_step && committed ? INSITU_OK : INSITU_ERROR_WRONG_STATE; }
 
-  // What colours need: an attribute that is there, and an own map that is.
-  insitu_status style_status(const ModelSet& set) const {
-    if (set.colormap >= 0 && !colormaps[static_cast<std::size_t>(set.colormap)]) return INSITU_ERROR_INVALID_HANDLE;
-    if (set.bound && set.styled_by_heat && !set.has_heat) return INSITU_ERROR_INVALID_ARGUMENT;
-    return INSITU_OK;
-  }
-  // What a commit comes to, set by set.
-  insitu_status commit_status() const {
-    if (needs_step() != INSITU_OK) return needs_step();
-    for (const ModelSet& set : sets)
-      if (set.alive && set.bound && style_status(set) != INSITU_OK) return style_status(set);
-    return INSITU_OK;
-  }
-  // What rendering and fitting need of the sets.
-  insitu_status scene_status() const {
-    if (needs_commit() != INSITU_OK) return needs_commit();
+  // What can be wrong with a commit: nothing, or any of these. With several sets, or several errors in one, it is not
+  // said which comes first. A set that was not updated in this step takes no part.
+  std::vector<insitu_status> commit_problems() const {
+    if (!in_step) return {INSITU_ERROR_WRONG_STATE};
+    std::vector<insitu_status> problems;
     for (const ModelSet& set : sets) {
       if (!set.alive || !set.bound) continue;
-      if (!set.built) return INSITU_ERROR_WRONG_STATE;
-      if (style_status(set) != INSITU_OK) return style_status(set);
+      if (set.colormap >= 0 && !colormaps[static_cast<std::size_t>(set.colormap)])
+        problems.push_back(INSITU_ERROR_INVALID_HANDLE);
+      if (set.styled_by_heat && !set.has_heat) problems.push_back(INSITU_ERROR_INVALID_ARGUMENT);
     }
-    return INSITU_OK;
+    return problems;
+  }
+  // The same for rendering and fitting, which need every set to be built.
+  std::vector<insitu_status> scene_problems() const {
+    if (needs_commit() != INSITU_OK) return {needs_commit()};
+    std::vector<insitu_status> problems = commit_problems();
+    for (const ModelSet& set : sets)
+      if (set.alive && set.bound && !set.built) problems.push_back(INSITU_ERROR_WRONG_STATE);
+    return problems;
   }
   void end_step() {
     in_step = committed = false;

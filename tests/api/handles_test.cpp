@@ -224,6 +224,19 @@ TEST(Handles, AStyleWhoseColourMapIsGone) {
   EXPECT_TRUE(works(studio.context, studio.step(cloud.desc)));
 }
 
+// A set that is not updated takes no part in a step, and neither does what is wrong with its style.
+TEST(Handles, AStyleOfASetThatIsAbsent) {
+  testing::Studio studio;
+  const Objects objects(studio.context);
+  insitu_style style;
+  insitu_style_init(&style);
+  style.own_map = objects.colormap;
+  ASSERT_TRUE(works(studio.context, insitu_geometry_set_style(studio.context, objects.geometry, &style)));
+  EXPECT_TRUE(works(studio.context, insitu_colormap_destroy(studio.context, objects.colormap)));
+  const testing::Cloud cloud(10);
+  EXPECT_TRUE(works(studio.context, studio.step(cloud.desc)));
+}
+
 // Objects may go in the middle of a step; what is left is drawn.
 TEST(Handles, DestroyedInAStep) {
   const Context context;

@@ -15,6 +15,7 @@
 #include <functional>
 #include <list>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -206,7 +207,7 @@ class enumerable_thread_specific {
     thread_local std::uint64_t owner = 0;
     thread_local T* mine = nullptr;
     if (owner != id_) {
-      const std::lock_guard lock(mutex_);
+      const std::lock_guard lock(*mutex_);
       auto [at, is_new] = of_thread_.try_emplace(std::this_thread::get_id(), nullptr);
       if (is_new) at->second = &values_.emplace_back(make_());
       mine = at->second;
@@ -222,7 +223,8 @@ class enumerable_thread_specific {
   static inline std::atomic<std::uint64_t> last_id_{0};
   const std::uint64_t id_ = ++last_id_;
   std::function<T()> make_;
-  std::mutex mutex_;
+  // On the heap: ThreadSanitizer hangs now and then on a mutex whose place on a stack was something else before.
+  const std::unique_ptr<std::mutex> mutex_ = std::make_unique<std::mutex>();
   std::map<std::thread::id, T*> of_thread_;
   std::list<T> values_;
 };
