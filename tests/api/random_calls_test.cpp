@@ -202,6 +202,7 @@ class Sequence {
       return;
     }
     data_.push_back(std::make_unique<Data>(random_));
+    hash_at_update_.push_back(0);
     set_ids_.push_back(geometry.id);
     model_.sets.push_back(set);
   }
@@ -264,6 +265,7 @@ class Sequence {
     const insitu_status result = model_.call(expected);
     expect("update", guarded(false, [&] { return insitu_particles_update(context_, {pick.id}, &desc); }), result);
     if (!listens || result != INSITU_OK) return;
+    hash_at_update_[static_cast<std::size_t>(pick.index)] = data_[static_cast<std::size_t>(pick.index)]->hash();
     ModelSet& set = set_of(pick);
     set.bound = true;
     set.built = false;
@@ -312,7 +314,10 @@ class Sequence {
     const insitu_status result = model_.call(expected);
     expect("restore_order",
            guarded(result == INSITU_OK, [&] { return insitu_particles_restore_order(context_, {pick.id}); }), result);
-    if (result == INSITU_OK) set_of(pick).bound = set_of(pick).built = false;
+    if (result != INSITU_OK) return;
+    const auto index = static_cast<std::size_t>(pick.index);
+    EXPECT_EQ(data_[index]->hash(), hash_at_update_[index]) << "every record is back in its place";
+    set_of(pick).bound = set_of(pick).built = false;
   }
 
   void set_style() {
@@ -575,6 +580,7 @@ class Sequence {
   testing::TemporaryFolder folder_;
   CallModel model_;
   std::vector<std::unique_ptr<Data>> data_;  // one for each set of the model
+  std::vector<std::uint64_t> hash_at_update_;
   std::vector<std::uint64_t> set_ids_;
   std::vector<std::uint64_t> view_ids_;
   std::vector<std::uint64_t> image_ids_;
