@@ -346,7 +346,8 @@ void Context::commit() {
   need_step("insitu_commit");
   // Whatever can be wrong is found before anything moves.
   geometries_.for_each([this](std::uint64_t, GeometryObject& geometry) {
-    if (geometry.particles.is_bound()) Colors::check(geometry.style, geometry.particles);
+    if (!geometry.particles.is_bound()) return;
+    Colors::check(geometry.style, geometry.particles);
     colormap_of(geometry.style);
   });
   if (!is_null()) {
