@@ -21,6 +21,25 @@ namespace insitu::kernels::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+// Bit i is lane i, of at most 32. The bytes are read back as wide as they were written: a wider load would have to wait
+// until the store has reached memory.
+template <class D, class Mask>
+HWY_INLINE std::uint32_t MaskBits(D d, Mask mask) {
+  std::uint8_t bytes[8];
+  hn::StoreMaskBits(d, mask, bytes);
+  if constexpr (hn::MaxLanes(D()) <= 8) {
+    return bytes[0];
+  } else if constexpr (hn::MaxLanes(D()) <= 16) {
+    std::uint16_t bits;
+    std::memcpy(&bits, bytes, sizeof bits);
+    return bits;
+  } else {
+    std::uint32_t bits;
+    std::memcpy(&bits, bytes, sizeof bits);
+    return bits;
+  }
+}
+
 // Half of the spacing of numbers at 1: the relative error of one operation.
 constexpr double f32_unit = 5.9604644775390625e-8;
 constexpr double f64_unit = 1.1102230246251565e-16;
@@ -182,12 +201,8 @@ HWY_INLINE bool VisitLeaf(const PkdTree& tree, const Positions& positions, std::
     candidate = hn::And(candidate, hn::And(hn::Le(hn::Sub(b, s), high), hn::Ge(hn::Add(b, s), low)));
     if (valid < lanes) candidate = hn::And(candidate, hn::FirstN(d, valid));
     if (hn::AllFalse(d, candidate)) return false;
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(d, candidate, bytes);
-    std::uint64_t bits;
-    std::memcpy(&bits, bytes, sizeof bits);
-    for (; bits != 0; bits &= bits - 1) {
-      const std::uint64_t place = begin + first + static_cast<std::uint64_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
+    for (std::uint32_t bits = MaskBits(d, candidate); bits != 0; bits &= bits - 1) {
+      const std::uint64_t place = begin + first + hwy::Num0BitsBelowLS1Bit_Nonzero32(bits);
       if (visitor.visit(tree, positions, place, ray)) return true;
     }
     high = limit();

@@ -7,21 +7,20 @@
 #define INSITU_KERNELS_PKD_PACKET_INL_H_
 #endif
 
+#include "kernels/pkd_enter-inl.h"
 #include "kernels/pkd_single-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace insitu::kernels::HWY_NAMESPACE {
 
-constexpr std::size_t packet_size = 16;
+constexpr std::size_t packet_size = EnteredRays::size;
 
 // Fewer rays than this go on one by one, with SIMD over particles.
 constexpr int fewest_together = 4;
 
-// Rays in f32, as EnterTree makes them; where their entries are close to each other, as those of camera rays are, all
-// distances count from the nearest one.
-//
-// Such rays form a beam: at every distance t from there they stay within beam_start + beam_growth t of its axis, the
-// mean of the rays. A particle whose distance from the axis is above its radius plus that is hit by none of them.
+// Rays as EnterTree makes them. Where their entries are close to each other, as those of camera rays are, they form a
+// beam: at every distance t from there they stay within beam_start + beam_growth t of its axis, the mean of the rays. A
+// particle whose distance from the axis is above its radius plus that is hit by none of them.
 class RayPacket {
  public:
   static constexpr std::size_t size = packet_size;
@@ -29,38 +28,9 @@ class RayPacket {
   // Takes rays[0 .. count).
   void Load(const PkdTree& tree, const TreeMargin& margin, const Ray* rays, std::size_t count, const double* t_limits) {
     margin_ = margin.value;
-    std::uint32_t inside = 0;
-    double nearest = std::numeric_limits<double>::infinity();
-    double farthest = -nearest;
-    TreeEntry entries[size];
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!EnterTree(tree, margin_, rays[i], t_limits[i], entries[i])) continue;
-      inside |= 1u << i;
-      nearest = std::min(nearest, entries[i].t_shift);
-      farthest = std::max(farthest, entries[i].t_shift);
-    }
-    const bool together = farthest - nearest <= margin.extent;
-    for (std::size_t i = 0; i < size; ++i) {
-      const bool is_inside = (inside >> i & 1) != 0;
-      if (!is_inside) {
-        SetLaneEmpty(i);
-        continue;
-      }
-      const TreeEntry& entry = entries[i];
-      const double shift = together ? nearest : entry.t_shift;
-      t_shift_[i] = shift;
-      for (int c = 0; c < 3; ++c) {
-        origin_[c][i] = static_cast<float>(rays[i].origin[c] + shift * rays[i].direction[c]);
-        direction_[c][i] = static_cast<float>(rays[i].direction[c]);
-        inverse_[c][i] = entry.inverse[c];
-        widening_[c][i] = entry.widening[c];
-      }
-      const double later = entry.t_shift - shift;
-      t_low_[i] = static_cast<float>(rays[i].t_min - shift - margin_);
-      t_enter_[i] = static_cast<float>(later * (1.0 - 4.0 * f32_unit));
-      t_high_[i] = static_cast<float>(static_cast<double>(entry.t_high) + later);
-    }
-    MakeBeam(together && inside != 0, inside);
+    const bool together = EnterTree(tree, margin, rays, t_limits, count, true, lanes_);
+    FindSigns();
+    has_beam_ = together && MakeBeam();
   }
 
   bool has_beam() const { return has_beam_; }
@@ -74,106 +44,100 @@ class RayPacket {
   bool uniform_sign(int axis) const { return uniform_sign_[axis]; }
 
   double margin() const { return margin_; }
-  const float* origin(int axis) const { return origin_[axis]; }
-  const float* direction(int axis) const { return direction_[axis]; }
-  const float* inverse(int axis) const { return inverse_[axis]; }
-  const float* widening(int axis) const { return widening_[axis]; }
-  const float* t_enter() const { return t_enter_; }
-  const float* t_low() const { return t_low_; }
-  const float* t_high() const { return t_high_; }  // nothing behind it counts: shrinks with every hit
+  const float* origin(int axis) const { return lanes_.origin[axis]; }
+  const float* direction(int axis) const { return lanes_.direction[axis]; }
+  const float* inverse(int axis) const { return lanes_.inverse[axis]; }
+  const float* widening(int axis) const { return lanes_.widening[axis]; }
+  const float* t_enter() const { return lanes_.t_enter; }
+  const float* t_low() const { return lanes_.t_low; }
+  const float* t_high() const { return lanes_.t_high; }  // nothing behind it counts: shrinks with every hit
 
   void LimitLane(std::size_t lane, double t) {
-    t_high_[lane] = std::min(t_high_[lane], static_cast<float>(t - t_shift_[lane] + margin_));
+    lanes_.t_high[lane] = std::min(lanes_.t_high[lane], static_cast<float>(t - lanes_.t_shift[lane] + margin_));
   }
-  void EndLane(std::size_t lane) { t_high_[lane] = -1e30f; }
+  void EndLane(std::size_t lane) { lanes_.t_high[lane] = -1e30f; }
 
   RayFrame FrameOf(std::size_t lane) const {
     RayFrame frame = {};
     for (int c = 0; c < 3; ++c) {
-      frame.head[c] = origin_[c][lane];
-      frame.point[c] = static_cast<double>(origin_[c][lane]);
-      frame.direction[c] = direction_[c][lane];
+      frame.head[c] = lanes_.origin[c][lane];
+      frame.point[c] = static_cast<double>(lanes_.origin[c][lane]);
+      frame.direction[c] = lanes_.direction[c][lane];
     }
     frame.scale = 1.0;
     frame.margin = margin_;
-    frame.t_shift = t_shift_[lane];
-    frame.t_low = t_low_[lane];
+    frame.t_shift = lanes_.t_shift[lane];
+    frame.t_low = lanes_.t_low[lane];
     return frame;
   }
   SlabRay<float> SlabOf(std::size_t lane) const {
     SlabRay<float> slab;
     for (int c = 0; c < 3; ++c) {
-      slab.origin[c] = origin_[c][lane];
-      slab.inverse[c] = inverse_[c][lane];
-      slab.widening[c] = widening_[c][lane];
-      slab.negative[c] = inverse_[c][lane] < 0.0f;
+      slab.origin[c] = lanes_.origin[c][lane];
+      slab.inverse[c] = lanes_.inverse[c][lane];
+      slab.widening[c] = lanes_.widening[c][lane];
+      slab.negative[c] = lanes_.inverse[c][lane] < 0.0f;
     }
     return slab;
   }
 
  private:
-  void SetLaneEmpty(std::size_t i) {
-    for (int c = 0; c < 3; ++c) {
-      origin_[c][i] = direction_[c][i] = widening_[c][i] = 0.0f;
-      inverse_[c][i] = 1.0f;
+  using D = hn::CappedTag<float, size>;
+  using V = hn::Vec<D>;
+
+  void FindSigns() {
+    const D d;
+    for (std::size_t c = 0; c < 3; ++c) {
+      std::uint32_t negative = 0;
+      for (std::size_t i = 0; i < size; i += hn::Lanes(d))
+        negative |= MaskBits(d, hn::Lt(hn::Load(d, lanes_.inverse[c] + i), hn::Zero(d))) << i;
+      negative &= lanes_.inside;
+      negative_[c] = 2 * hwy::PopCount(negative) > hwy::PopCount(lanes_.inside);
+      uniform_sign_[c] = negative == 0 || negative == lanes_.inside;
     }
-    t_shift_[i] = 0.0;
-    t_low_[i] = 0.0f;
-    t_enter_[i] = 1.0f;
-    t_high_[i] = -1.0f;
   }
 
-  void MakeBeam(bool together, std::uint32_t inside) {
-    double axis[6] = {};
-    const int rays = static_cast<int>(hwy::PopCount(inside));
-    for (int c = 0; c < 3; ++c) {
-      int negatives = 0;
-      for (std::size_t i = 0; i < size; ++i) {
-        if ((inside >> i & 1) == 0) continue;
-        axis[c] += static_cast<double>(origin_[c][i]);
-        axis[3 + c] += static_cast<double>(direction_[c][i]);
-        negatives += inverse_[c][i] < 0.0f ? 1 : 0;
+  // False: the rays go too different ways. Lanes without a ray hold zeros.
+  bool MakeBeam() {
+    const D d;
+    const float rays = static_cast<float>(hwy::PopCount(lanes_.inside));
+    float squared_length = 0.0f;
+    for (std::size_t c = 0; c < 3; ++c) {
+      V origins = hn::Zero(d);
+      V directions = hn::Zero(d);
+      for (std::size_t i = 0; i < size; i += hn::Lanes(d)) {
+        origins = hn::Add(origins, hn::Load(d, lanes_.origin[c] + i));
+        directions = hn::Add(directions, hn::Load(d, lanes_.direction[c] + i));
       }
-      negative_[c] = 2 * negatives > rays;
-      uniform_sign_[c] = negatives == 0 || negatives == rays;
-      // Lanes without a ray go the way of the others.
-      for (std::size_t i = 0; i < size; ++i)
-        if ((inside >> i & 1) == 0) inverse_[c][i] = negative_[c] ? -1.0f : 1.0f;
+      beam_origin_[c] = hn::GetLane(hn::SumOfLanes(d, origins)) / rays;
+      beam_direction_[c] = hn::GetLane(hn::SumOfLanes(d, directions));
+      squared_length += beam_direction_[c] * beam_direction_[c];
     }
-    const double length = std::sqrt(axis[3] * axis[3] + axis[4] * axis[4] + axis[5] * axis[5]);
-    has_beam_ = together && length > 0.9 * rays;
-    if (!has_beam_) return;
-    double start = 0.0;
-    double growth = 0.0;
-    for (int c = 0; c < 3; ++c) {
-      beam_origin_[c] = static_cast<float>(axis[c] / rays);
-      beam_direction_[c] = static_cast<float>(axis[3 + c] / length);
-    }
-    for (std::size_t i = 0; i < size; ++i) {
-      if ((inside >> i & 1) == 0) continue;
-      double offset = 0.0;
-      double slope = 0.0;
-      for (int c = 0; c < 3; ++c) {
-        const double apart = static_cast<double>(origin_[c][i]) - static_cast<double>(beam_origin_[c]);
-        const double turned = static_cast<double>(direction_[c][i]) - static_cast<double>(beam_direction_[c]);
-        offset += apart * apart;
-        slope += turned * turned;
+    const float length = std::sqrt(squared_length);
+    if (!(length > 0.9f * rays)) return false;
+    for (float& component : beam_direction_) component /= length;
+    // Whatever the axis is, the bounds are measured from it. The factors cover the rounding of the measurement.
+    V start = hn::Zero(d);
+    V growth = hn::Zero(d);
+    for (std::size_t i = 0; i < size; i += hn::Lanes(d)) {
+      V offset = hn::Zero(d);
+      V slope = hn::Zero(d);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const V apart = hn::Sub(hn::Load(d, lanes_.origin[c] + i), hn::Set(d, beam_origin_[c]));
+        const V turned = hn::Sub(hn::Load(d, lanes_.direction[c] + i), hn::Set(d, beam_direction_[c]));
+        offset = hn::MulAdd(apart, apart, offset);
+        slope = hn::MulAdd(turned, turned, slope);
       }
-      start = std::max(start, offset);
-      growth = std::max(growth, slope);
+      const auto is_inside = hn::Le(hn::Load(d, lanes_.t_enter + i), hn::Load(d, lanes_.t_high + i));
+      start = hn::Max(start, hn::IfThenElseZero(is_inside, offset));
+      growth = hn::Max(growth, hn::IfThenElseZero(is_inside, slope));
     }
-    beam_start_ = static_cast<float>(std::sqrt(start) * (1.0 + 1e-5) + margin_);
-    beam_growth_ = static_cast<float>(std::sqrt(growth) * (1.0 + 1e-5));
+    beam_start_ = std::sqrt(hn::GetLane(hn::MaxOfLanes(d, start))) * (1.0f + 1e-5f) + static_cast<float>(margin_);
+    beam_growth_ = std::sqrt(hn::GetLane(hn::MaxOfLanes(d, growth))) * (1.0f + 1e-5f);
+    return true;
   }
 
-  HWY_ALIGN float origin_[3][size];
-  HWY_ALIGN float direction_[3][size];
-  HWY_ALIGN float inverse_[3][size];
-  HWY_ALIGN float widening_[3][size];
-  HWY_ALIGN float t_enter_[size];
-  HWY_ALIGN float t_low_[size];
-  HWY_ALIGN float t_high_[size];
-  double t_shift_[size];
+  EnteredRays lanes_;
   double margin_;
   bool has_beam_;
   bool negative_[3];
@@ -267,15 +231,6 @@ class PacketTraversal {
   using D = hn::CappedTag<float, packet_size>;
   using V = hn::Vec<D>;
 
-  template <class Mask>
-  static HWY_INLINE std::uint32_t Bits(D d, Mask mask) {
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(d, mask, bytes);
-    std::uint32_t bits;
-    std::memcpy(&bits, bytes, sizeof bits);
-    return bits;
-  }
-
   // What the near and the far side see of the rays: `now` becomes the near one. Returns the lanes that enter it.
   HWY_INLINE std::uint32_t Split(PacketSubtree<Key>& now, PacketSubtree<Key>& far, int axis, float plane,
                                  std::uint32_t& far_active) const {
@@ -308,8 +263,8 @@ class PacketTraversal {
       hn::Store(near_leave, d, now.t_leave + i);
       hn::Store(far_enter, d, far.t_enter + i);
       hn::Store(far_leave, d, far.t_leave + i);
-      near_active |= Bits(d, hn::Le(near_enter, near_leave)) << i;
-      far_active |= Bits(d, hn::Le(far_enter, far_leave)) << i;
+      near_active |= MaskBits(d, hn::Le(near_enter, near_leave)) << i;
+      far_active |= MaskBits(d, hn::Le(far_enter, far_leave)) << i;
     }
     return near_active;
   }
@@ -322,7 +277,7 @@ class PacketTraversal {
     for (std::size_t i = 0; i < packet_size; i += lanes) {
       const V leave = hn::Min(hn::Load(d, subtree.t_leave + i), hn::Load(d, packet_.t_high() + i));
       hn::Store(leave, d, subtree.t_leave + i);
-      active |= Bits(d, hn::Le(hn::Load(d, subtree.t_enter + i), leave)) << i;
+      active |= MaskBits(d, hn::Le(hn::Load(d, subtree.t_enter + i), leave)) << i;
     }
     return active;
   }
@@ -367,7 +322,7 @@ class PacketTraversal {
       const V s = hn::Sqrt(hn::Max(hn::Sub(r2, distance2), hn::Zero(d)));
       const auto in_time = hn::And(hn::Le(hn::Sub(b, s), hn::Load(d, packet_.t_high() + i)),
                                    hn::Ge(hn::Add(b, s), hn::Load(d, packet_.t_low() + i)));
-      std::uint32_t candidates = Bits(d, hn::And(close, in_time)) << i & active;
+      std::uint32_t candidates = MaskBits(d, hn::And(close, in_time)) << i & active;
       for (; candidates != 0; candidates &= candidates - 1)
         Confirm(place, hwy::Num0BitsBelowLS1Bit_Nonzero32(candidates));
     }
@@ -421,15 +376,12 @@ class PacketTraversal {
       const W py = hn::NegMulAdd(b, dy, my);
       const W pz = hn::NegMulAdd(b, dz, mz);
       const W distance2 = hn::MulAdd(px, px, hn::MulAdd(py, py, hn::Mul(pz, pz)));
-      std::uint8_t bytes[8] = {};
-      hn::StoreMaskBits(d, hn::Le(distance2, wide2), bytes);
-      std::uint64_t bits;
-      std::memcpy(&bits, bytes, sizeof bits);
-      bits &= ~std::uint64_t{0} >> (64 - std::min(lanes, count - first));
+      std::uint32_t bits = MaskBits(d, hn::Le(distance2, wide2));
+      bits &= ~std::uint32_t{0} >> (32 - std::min(lanes, count - first));
       // What the vector before has seen already.
-      if (first < done) bits &= ~std::uint64_t{0} << (done - first);
+      if (first < done) bits &= ~std::uint32_t{0} << (done - first);
       for (; bits != 0; bits &= bits - 1)
-        VisitParticle(begin + first + static_cast<std::uint64_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(bits)), active);
+        VisitParticle(begin + first + hwy::Num0BitsBelowLS1Bit_Nonzero32(bits), active);
     }
   }
 

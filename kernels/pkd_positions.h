@@ -22,9 +22,13 @@ class PlacedPositions {
   T key(std::uint64_t place, int axis) const {
     return load<T>(base_[axis] + static_cast<std::ptrdiff_t>(place) * stride_);
   }
+  // Where reading a centre takes two reads, one after the other, prefetch() asks for the first and prefetch_behind()
+  // for the second.
+  static constexpr bool is_indirect = false;
   void prefetch(std::uint64_t place) const {
     __builtin_prefetch(base_[0] + static_cast<std::ptrdiff_t>(place) * stride_);
   }
+  void prefetch_behind(std::uint64_t) const {}
   void centre(std::uint64_t place, double out[3]) const {
     for (int c = 0; c < 3; ++c) out[c] = static_cast<double>(key(place, c));
   }
@@ -57,7 +61,11 @@ class IndexedPositions {
   T key(std::uint64_t place, int axis) const {
     return load<T>(base_[axis] + static_cast<std::ptrdiff_t>(index_[place]) * stride_);
   }
+  static constexpr bool is_indirect = true;
   void prefetch(std::uint64_t place) const { __builtin_prefetch(index_ + place); }
+  void prefetch_behind(std::uint64_t place) const {
+    __builtin_prefetch(base_[0] + static_cast<std::ptrdiff_t>(index_[place]) * stride_);
+  }
   void centre(std::uint64_t place, double out[3]) const {
     const std::ptrdiff_t offset = static_cast<std::ptrdiff_t>(index_[place]) * stride_;
     for (int c = 0; c < 3; ++c) out[c] = static_cast<double>(load<T>(base_[c] + offset));
@@ -82,7 +90,9 @@ class GeneralPositions {
   double key(std::uint64_t place, int axis) const {
     return tree_.position.value(tree_.position_of_place(place), static_cast<std::uint32_t>(axis));
   }
+  static constexpr bool is_indirect = false;
   void prefetch(std::uint64_t) const {}
+  void prefetch_behind(std::uint64_t) const {}
   void centre(std::uint64_t place, double out[3]) const { tree_.centre(place, out); }
   void centre_f32(std::uint64_t place, float out[3]) const {
     double centre[3];

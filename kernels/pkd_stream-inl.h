@@ -15,12 +15,14 @@
 
 #include <memory>
 
+#include "kernels/pkd_enter-inl.h"
 #include "kernels/pkd_single-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace insitu::kernels::HWY_NAMESPACE {
 
 constexpr std::size_t longest_stream = 4096;
+constexpr std::uint8_t no_octant = 8;
 
 // What a subtree needs of a ray; rays themselves stay where they are.
 struct StreamEntry {
@@ -55,21 +57,10 @@ class AnyHitStream {
     // One pass puts every ray's octant down, one more per octant collects its rays.
     std::uint8_t octants[longest_stream];
     std::size_t sizes[8] = {};
-    for (std::size_t i = 0; i < count; ++i) {
-      octants[i] = 8;
-      if (occluded_[begin + i] != 0) continue;
-      if (HWY_UNLIKELY(!margin_.Fits(rays_[begin + i]))) {
-        AnyHitVisitor visitor(rays_[begin + i]);
-        TraverseTree(tree_, positions_, rays_[begin + i], visitor);
-        occluded_[begin + i] = visitor.found ? 1 : 0;
-        continue;
-      }
-      if (!Prepare(begin + i, lanes_[i])) continue;
-      const float* inverse = lanes_[i].inverse;
-      octants[i] = static_cast<std::uint8_t>((inverse[0] < 0.0f ? 1 : 0) | (inverse[1] < 0.0f ? 2 : 0) |
-                                             (inverse[2] < 0.0f ? 4 : 0));
-      ++sizes[octants[i]];
-    }
+    for (std::size_t i = 0; i < count; i += EnteredRays::size)
+      Prepare(begin + i, i, std::min(count - i, EnteredRays::size), octants + i);
+    for (std::size_t i = 0; i < count; ++i)
+      if (octants[i] != no_octant) ++sizes[octants[i]];
     first_ray_ = begin;
     Walk* active[8];
     std::size_t active_count = 0;
@@ -78,6 +69,7 @@ class AnyHitStream {
       if (sizes[octant] == 0) continue;
       Walk& walk = walks_[octant];
       walk.height = 0;
+      walk.is_looked_up = false;
       walk.now = {0, tree_.count, RootBox<Key>(tree_), entries, 0};
       for (int c = 0; c < 3; ++c) walk.negative[c] = (octant >> c & 1) != 0;
       for (std::size_t i = 0; i < count; ++i)
@@ -121,6 +113,7 @@ class AnyHitStream {
     int height;
     Node now;
     bool negative[3];
+    bool is_looked_up;  // only where centres are read through an index
   };
 
   static std::size_t Levels(std::uint64_t particles) {
@@ -129,24 +122,49 @@ class AnyHitStream {
     return levels;
   }
 
-  HWY_INLINE bool Prepare(std::size_t index, RayLanes& lanes) const {
-    const Ray& ray = rays_[index];
-    TreeEntry entry;
-    if (!EnterTree(tree_, margin_.value, ray, ray.t_max, entry)) return false;
-    for (int c = 0; c < 3; ++c) {
-      lanes.origin[c] = entry.origin[c];
-      lanes.direction[c] = static_cast<float>(ray.direction[c]);
-      lanes.inverse[c] = entry.inverse[c];
-      lanes.widening[c] = entry.widening[c];
+  // Up to EnteredRays::size rays: their lanes from first_lane on, and their octants.
+  HWY_INLINE void Prepare(std::size_t first_ray, std::size_t first_lane, std::size_t count, std::uint8_t* octants) {
+    const Ray* const rays = rays_ + first_ray;
+    double t_limits[EnteredRays::size];
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool is_left = occluded_[first_ray + i] == 0;
+      t_limits[i] = is_left ? rays[i].t_max : -std::numeric_limits<double>::infinity();
+      if (is_left && HWY_UNLIKELY(!margin_.Fits(rays[i]))) {
+        AnyHitVisitor visitor(rays[i]);
+        TraverseTree(tree_, positions_, rays[i], visitor);
+        occluded_[first_ray + i] = visitor.found ? 1 : 0;
+        t_limits[i] = -std::numeric_limits<double>::infinity();
+      }
     }
-    lanes.t_low = entry.t_low;
-    lanes.t_high = entry.t_high;
-    return true;
+    EnteredRays entered;
+    EnterTree(tree_, margin_, rays, t_limits, count, false, entered);
+    for (std::size_t i = 0; i < count; ++i) {
+      RayLanes& lanes = lanes_[first_lane + i];
+      int octant = 0;
+      for (int c = 0; c < 3; ++c) {
+        lanes.origin[c] = entered.origin[c][i];
+        lanes.direction[c] = entered.direction[c][i];
+        lanes.inverse[c] = entered.inverse[c][i];
+        lanes.widening[c] = entered.widening[c][i];
+        octant |= lanes.inverse[c] < 0.0f ? 1 << c : 0;
+      }
+      lanes.t_low = entered.t_low[i];
+      lanes.t_high = entered.t_high[i];
+      octants[i] = entered.is_inside(i) ? static_cast<std::uint8_t>(octant) : no_octant;
+    }
   }
 
-  // A split, or a leaf and the way back from it. False: this stream has seen the whole tree.
+  // A split, or a leaf and the way back from it; before them, a look into the index where there is one. False: this
+  // stream has seen the whole tree.
   HWY_INLINE bool Step(Walk& walk) {
     Node& now = walk.now;
+    if (Positions::is_indirect) {
+      walk.is_looked_up = !walk.is_looked_up;
+      if (walk.is_looked_up) {
+        PrefetchBehind(now.begin, now.end);
+        return true;
+      }
+    }
     if (now.ray_count != 0 && now.end - now.begin > pkd_leaf_size && !now.box.is_point()) {
       const int axis = now.box.split_axis();
       const std::uint64_t mid = now.begin + (now.end - now.begin) / 2;
@@ -185,8 +203,15 @@ class AnyHitStream {
     if (end - begin > pkd_leaf_size) {
       positions_.prefetch(begin + (end - begin) / 2);
     } else {
-      constexpr std::uint64_t per_line = 5;  // particles, of 12 bytes
+      constexpr std::uint64_t per_line = Positions::is_indirect ? 16 : 5;  // of 4 bytes each, of 12
       for (std::uint64_t place = begin; place < end; place += per_line) positions_.prefetch(place);
+    }
+  }
+  HWY_INLINE void PrefetchBehind(std::uint64_t begin, std::uint64_t end) const {
+    if (end - begin > pkd_leaf_size) {
+      positions_.prefetch_behind(begin + (end - begin) / 2);
+    } else {
+      for (std::uint64_t place = begin; place < end; ++place) positions_.prefetch_behind(place);
     }
   }
 
@@ -240,13 +265,16 @@ class AnyHitStream {
     }
   }
 
-  HWY_NOINLINE void Confirm(std::uint64_t place, std::uint32_t ray) {
+  // True: the ray is occluded.
+  HWY_NOINLINE bool Confirm(std::uint64_t place, std::uint32_t ray) {
     RayLanes& lanes = lanes_[ray];
+    if (lanes.t_high < 0.0f) return true;
     const Ray& exact = rays_[first_ray_ + ray];
     AnyHitVisitor visitor(exact);
-    if (lanes.t_high < 0.0f || !visitor.visit(tree_, positions_, place, exact)) return;
+    if (!visitor.visit(tree_, positions_, place, exact)) return false;
     occluded_[first_ray_ + ray] = 1;
     lanes.t_high = -std::numeric_limits<float>::infinity();
+    return true;
   }
 
   HWY_INLINE void VisitRun(const Node& run) {
@@ -296,14 +324,9 @@ class AnyHitStream {
         const V s = hn::Sqrt(hn::Max(hn::Sub(r2, distance2), hn::Zero(d)));
         const auto in_time =
             hn::And(hn::Le(hn::Sub(b, s), hn::Set(d, ray.t_high)), hn::Ge(hn::Add(b, s), hn::Set(d, ray.t_low)));
-        std::uint8_t bytes[8] = {};
-        hn::StoreMaskBits(d, hn::And(close, in_time), bytes);
-        std::uint64_t bits;
-        std::memcpy(&bits, bytes, sizeof bits);
-        bits &= ~std::uint64_t{0} >> (64 - valid);
+        std::uint32_t bits = MaskBits(d, hn::And(close, in_time)) & ~std::uint32_t{0} >> (32 - valid);
         for (; bits != 0; bits &= bits - 1)
-          Confirm(begin + first + static_cast<std::uint64_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(bits)),
-                  run.rays[i].ray);
+          if (Confirm(begin + first + hwy::Num0BitsBelowLS1Bit_Nonzero32(bits), run.rays[i].ray)) break;
       }
     }
   }

@@ -29,8 +29,9 @@ struct PkdBox {
     const Key x = upper[0] - lower[0];
     const Key y = upper[1] - lower[1];
     const Key z = upper[2] - lower[2];
-    if (x >= y) return x >= z ? 0 : 2;
-    return y >= z ? 1 : 2;
+    // Without branches: which side is longest cannot be predicted.
+    const int of_two = y > x ? 1 : 0;
+    return z > (y > x ? y : x) ? 2 : of_two;
   }
   bool is_point() const { return lower[0] == upper[0] && lower[1] == upper[1] && lower[2] == upper[2]; }
 };

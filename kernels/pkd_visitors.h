@@ -21,11 +21,12 @@ class FirstHitVisitor {
 
   template <class Positions>
   bool visit(const PkdTree& tree, const Positions& positions, std::uint64_t place, const Ray& ray) {
+    const std::uint64_t item = tree.item(place);
+    if (item == ray.exclude) return false;
     double centre[3];
     positions.centre(place, centre);
-    const std::uint64_t item = tree.item(place);
     const double t = sphere_first_hit(ray.origin, ray.direction, centre, tree.radius.value(item), ray.t_min);
-    if (!(t <= limit_) || item == ray.exclude) return false;
+    if (!(t <= limit_)) return false;
     if (t == limit_ && hit_->t == t && !is_preferred(tree, item)) return false;
     limit_ = t;
     *hit_ = {t, item};
@@ -56,11 +57,12 @@ class AnyHitVisitor {
 
   template <class Positions>
   bool visit(const PkdTree& tree, const Positions& positions, std::uint64_t place, const Ray& ray) {
+    const std::uint64_t item = tree.item(place);
+    if (item == ray.exclude) return false;  // first, because it is the most frequent: rays start on what they exclude
     double centre[3];
     positions.centre(place, centre);
-    const std::uint64_t item = tree.item(place);
     const double t = sphere_first_hit(ray.origin, ray.direction, centre, tree.radius.value(item), ray.t_min);
-    found = t <= limit_ && t != std::numeric_limits<double>::infinity() && item != ray.exclude;
+    found = t <= limit_ && t != std::numeric_limits<double>::infinity();
     return found;
   }
 
