@@ -35,6 +35,7 @@ struct Options {
   std::vector<std::uint64_t> counts;
   std::vector<std::string> scenes = {"uniform", "clustered"};
   int repetitions = 5;
+  std::uint32_t image_edge_px = 1024;
   double ao_reach = 0.0;
 };
 
@@ -141,7 +142,7 @@ BestWay find_best(const std::vector<Candidate>& candidates, EmbreeGeometry geome
 void measure_view(const Options& options, const ParticleScene& scene, const std::string& view,
                   const std::vector<Candidate>& candidates, const OwnParticles& placed, const OwnParticles& indexed,
                   std::vector<insitu::Workers>& teams, Worst& worst, nlohmann::ordered_json& rows) {
-  const std::vector<Ray> camera = bench::camera_rays(view, bench::image_edge_px);
+  const std::vector<Ray> camera = bench::camera_rays(view, options.image_edge_px);
   std::vector<Hit> hits(camera.size());
   insitu::kernels::pkd_first_hits(placed.tree(), camera.data(), hits.data(), camera.size());
   const std::vector<Ray> ao = bench::occlusion_rays(camera, hits, placed.position, options.ao_reach);
@@ -313,7 +314,7 @@ void measure_scene(const Options& options, const std::string& name, std::uint64_
 int main(int argc, char** argv) {
   CLI::App app("The P-k-d tree beside Embree, on the same particles and rays");
   Options options;
-  app.add_flag("--quick", options.quick, "1M particles, one build quality, few repetitions: within 45 s");
+  app.add_flag("--quick", options.quick, "1M particles, 704 x 704 pixels, one build quality, 3 repetitions: within 45 s");
   app.add_option("--json", options.json, "write {context, results} to this file");
   app.add_option("--particles", options.counts, "numbers of particles (default 1000000 and 10000000)");
   app.add_option("--scenes", options.scenes, "uniform, clustered")->capture_default_str();
@@ -321,12 +322,16 @@ int main(int argc, char** argv) {
   options.ao_reach = std::numeric_limits<double>::infinity();
   app.add_option("--ao-reach", options.ao_reach, "length of occlusion rays; the cloud has size 1 (default: infinite)");
   CLI11_PARSE(app, argc, argv);
-  if (options.quick) options.repetitions = std::min(options.repetitions, 3);
+  if (options.quick) {
+    options.repetitions = std::min(options.repetitions, 3);
+    options.image_edge_px = 704;
+  }
   if (options.counts.empty())
     options.counts =
         options.quick ? std::vector<std::uint64_t>{1000000} : std::vector<std::uint64_t>{1000000, 10000000};
 
   bench::Report report(argc, argv);
+  report.context()["image_edge_px"] = options.image_edge_px;
   std::vector<insitu::Workers> teams;
   teams.emplace_back(1);
   teams.emplace_back(2);

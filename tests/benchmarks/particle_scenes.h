@@ -20,10 +20,9 @@ struct ParticleScene {
 // "clustered": 200 Gaussian clusters of width 0.02 in the unit cube, radius a fifth of the mean spacing of the cube.
 ParticleScene make_scene(const std::string& name, std::uint64_t count);
 
-constexpr std::uint32_t image_edge_px = 1024;
 constexpr std::size_t tile_rays = 4096;  // 64 x 64 pixels, in Morton order in every array of rays
 
-// "far": the whole cloud in view. "close": from within it.
+// "far": the whole cloud in view. "close": from within it. `edge_px` is a multiple of 64.
 std::vector<insitu::kernels::Ray> camera_rays(const std::string& view, std::uint32_t edge_px);
 
 // One ambient occlusion ray per hit, in the order of the camera rays. `position` are the centres by item.
