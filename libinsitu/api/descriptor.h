@@ -10,6 +10,9 @@
 
 namespace insitu {
 
+// More than any struct of any version will have: what claims to be longer has not been initialised.
+constexpr std::uint32_t longest_struct_bytes = 4096;
+
 // The caller's struct in today's size: members it did not know are zero, which always means the old behaviour. Members
 // that this library does not know must be zero.
 template <class T>
@@ -19,6 +22,9 @@ T copy_in(const T* theirs, const char* name) {
   std::memcpy(&size, theirs, sizeof size);
   if (size < sizeof size)
     throw Error(INSITU_ERROR_INVALID_ARGUMENT, std::string(name) + "::struct_size is 0: call " + name + "_init first");
+  if (size > longest_struct_bytes)
+    throw Error(INSITU_ERROR_INVALID_ARGUMENT, std::string(name) + "::struct_size is " + std::to_string(size) +
+                                                   ", which no version has: call " + name + "_init first");
   T ours;
   std::memset(&ours, 0, sizeof ours);
   std::memcpy(&ours, theirs, std::min<std::size_t>(size, sizeof ours));

@@ -47,6 +47,11 @@ void expect_sizes_are_honoured(insitu_context context, const char* name, const T
   without_size.struct_size = 0;
   EXPECT_TRUE(fails(context, call(&without_size), INSITU_ERROR_INVALID_ARGUMENT, {name, "struct_size"}));
 
+  // What was in memory before, taken for a size.
+  T not_initialised = good;
+  not_initialised.struct_size = 0x5A5A5A5A;
+  EXPECT_TRUE(fails(context, call(&not_initialised), INSITU_ERROR_INVALID_ARGUMENT, {name, "struct_size"}));
+
   const Later<T> zero_surplus = later(good, 0);
   EXPECT_TRUE(works(context, call(&zero_surplus.now)));
   const Later<T> surplus = later(good, 1);
