@@ -14,9 +14,9 @@
 namespace insitu {
 namespace {
 
-std::uint8_t next_context_number() {
+std::uint32_t next_context_serial() {
   static std::atomic<std::uint32_t> counter{0};
-  return static_cast<std::uint8_t>(counter.fetch_add(1) % 255 + 1);
+  return counter.fetch_add(1);
 }
 
 constexpr std::uint32_t most_pixels_per_side = 1 << 16;
@@ -60,15 +60,15 @@ const char* handle_kind_name(HandleKind kind) {
 }
 
 Context::Context(const insitu_context_desc& desc)
-    : number_(next_context_number()),
+    : serial_(next_context_serial()),
       workers_(desc.max_threads),
       budget_(desc.max_extra_bytes),
       check_level_(desc.check_level),
       flags_(desc.flags),
-      geometries_(HandleKind::geometry, number_),
-      colormaps_(HandleKind::colormap, number_),
-      views_(HandleKind::view, number_),
-      images_(HandleKind::image, number_) {}
+      geometries_(HandleKind::geometry, serial_),
+      colormaps_(HandleKind::colormap, serial_),
+      views_(HandleKind::view, serial_),
+      images_(HandleKind::image, serial_) {}
 
 // ----------------------------------------------------------------------------------------------- messages and state --
 

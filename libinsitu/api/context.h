@@ -103,7 +103,7 @@ class Context {
   insitu_status write_report();
   void refresh_report();
 
-  const std::uint8_t number_;  // in the ids of this context's objects
+  const std::uint32_t serial_;  // in the ids of this context's objects
   Workers workers_;
   Budget budget_;
   std::uint32_t check_level_;

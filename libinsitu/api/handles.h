@@ -1,5 +1,7 @@
 // Children of a context behind 64-bit ids that tell a stale, foreign or wrong id from a good one:
 //   kind (8 bits) | generation (24) | context (8) | slot (24)
+// Context numbers come round after 255 contexts; the generations of a context that has a number for the second time
+// begin elsewhere, so that ids of the first one stay stale.
 #pragma once
 
 #include <cstdint>
@@ -17,14 +19,18 @@ const char* handle_kind_name(HandleKind kind);
 template <class T>
 class HandleTable {
  public:
-  HandleTable(HandleKind kind, std::uint8_t context) : kind_(kind), context_(context) {}
+  // `serial` counts the contexts of the process, from 0.
+  HandleTable(HandleKind kind, std::uint32_t serial)
+      : kind_(kind),
+        context_(static_cast<std::uint8_t>(serial % 255 + 1)),
+        first_generation_((serial / 255 * generations_apart + 1) & 0xFFFFFF) {}
 
   std::uint64_t insert(std::unique_ptr<T> object) {
     std::size_t slot = 0;
     while (slot < slots_.size() && slots_[slot].object) ++slot;
     if (slot == slots_.size()) {
       if (slot >= most_slots) throw Error(INSITU_ERROR_OUT_OF_MEMORY, "too many objects in one context");
-      slots_.emplace_back();
+      slots_.push_back({nullptr, first_generation_});
     }
     slots_[slot].object = std::move(object);
     return id_of(slot);
@@ -48,9 +54,10 @@ class HandleTable {
 
  private:
   static constexpr std::size_t most_slots = 1 << 24;
+  static constexpr std::uint32_t generations_apart = 0x10001;  // odd: all 2^24 beginnings occur
   struct Slot {
     std::unique_ptr<T> object;
-    std::uint32_t generation = 1;
+    std::uint32_t generation;
   };
 
   std::uint64_t id_of(std::size_t slot) const {
@@ -72,6 +79,7 @@ class HandleTable {
 
   HandleKind kind_;
   std::uint8_t context_;
+  std::uint32_t first_generation_;
   std::vector<Slot> slots_;
 };
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <vector>
 
 #include "api_test_tools.h"
 
@@ -183,6 +184,19 @@ TEST(Handles, OfAContextThatIsGone) {
   const Context context;
   testing::make_particles(context);
   EXPECT_TRUE(fails(context, insitu_geometry_destroy(context, geometry), INSITU_ERROR_INVALID_HANDLE, {"geometry"}));
+}
+
+// There are 255 numbers for contexts within an id; the 256th context has that of the first.
+TEST(Handles, OfAContextThatIsLongGone) {
+  std::vector<insitu_geometry> gone;
+  for (int i = 0; i < 255; ++i) {
+    const Context context;
+    gone.push_back(testing::make_particles(context));
+  }
+  const Context context;
+  testing::make_particles(context);
+  for (const insitu_geometry geometry : gone)
+    EXPECT_TRUE(fails(context, insitu_geometry_destroy(context, geometry), INSITU_ERROR_INVALID_HANDLE, {"geometry"}));
 }
 
 TEST(Handles, OfWhatWasDestroyed) {
