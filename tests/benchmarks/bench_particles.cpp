@@ -314,7 +314,8 @@ void measure_scene(const Options& options, const std::string& name, std::uint64_
 int main(int argc, char** argv) {
   CLI::App app("The P-k-d tree beside Embree, on the same particles and rays");
   Options options;
-  app.add_flag("--quick", options.quick, "1M particles, 704 x 704 pixels, one build quality, 3 repetitions: within 45 s");
+  app.add_flag("--quick", options.quick,
+               "1M particles, 704 x 704 pixels, one build quality, 3 repetitions: within 45 s");
   app.add_option("--json", options.json, "write {context, results} to this file");
   app.add_option("--particles", options.counts, "numbers of particles (default 1000000 and 10000000)");
   app.add_option("--scenes", options.scenes, "uniform, clustered")->capture_default_str();
