@@ -63,6 +63,36 @@ bool is_float(Scalar type) { return type == Scalar::f32 || type == Scalar::f64; 
 
 std::string number(std::int64_t value) { return std::to_string(value); }
 
+std::uintptr_t row_address(const insitu_array& array, std::ptrdiff_t table_stride, std::uint64_t item) {
+  const auto* table = static_cast<const std::byte*>(array.component[0]);
+  return kernels::load<std::uintptr_t>(table + static_cast<std::ptrdiff_t>(item) * table_stride);
+}
+
+// Every row pointer is looked at: one that is NULL would end the host.
+std::optional<std::string> find_bad_row(const insitu_array& array, std::ptrdiff_t table_stride, std::size_t alignment) {
+  for (std::uint64_t item = 0; item < array.count; ++item) {
+    const std::uintptr_t row = row_address(array, table_stride, item);
+    if (row == 0) return "row pointer " + std::to_string(item) + " is NULL";
+    if (row % alignment != 0)
+      return "row pointer " + std::to_string(item) + " is not aligned to " + std::to_string(alignment) + " bytes";
+  }
+  return std::nullopt;
+}
+
+// The distance of rows that stand in one block at equal distances, as most codes allocate them: such rows are records.
+std::optional<std::ptrdiff_t> distance_of_rows(const insitu_array& array, std::ptrdiff_t table_stride,
+                                               std::ptrdiff_t scalar_bytes) {
+  const std::ptrdiff_t row_bytes = scalar_bytes * static_cast<std::ptrdiff_t>(array.components);
+  if (array.count < 2) return row_bytes;
+  const std::uintptr_t first = row_address(array, table_stride, 0);
+  const std::uintptr_t distance = row_address(array, table_stride, 1) - first;  // modulo 2^64: rows may go backwards
+  for (std::uint64_t item = 2; item < array.count; ++item)
+    if (row_address(array, table_stride, item) != first + item * distance) return std::nullopt;
+  const auto stride = static_cast<std::ptrdiff_t>(distance);
+  if (std::abs(stride) < row_bytes) return std::nullopt;
+  return stride;
+}
+
 // The layout alone: whatever the array is used for.
 ArrayVerdict judge_layout(const insitu_array& array, Scalar type) {
   const auto size = static_cast<std::int64_t>(kernels::size_of(type));
@@ -97,6 +127,10 @@ ArrayVerdict judge_layout(const insitu_array& array, Scalar type) {
     if (reinterpret_cast<std::uintptr_t>(array.component[c]) % static_cast<std::uintptr_t>(unit) != 0)
       return refuse(INSITU_ERROR_INVALID_ARGUMENT,
                     "component[" + std::to_string(c) + "] is not aligned to " + number(unit) + " bytes");
+  if (rows) {
+    const std::optional<std::string> bad = find_bad_row(array, stride, static_cast<std::size_t>(size));
+    if (bad) return refuse(INSITU_ERROR_INVALID_ARGUMENT, *bad);
+  }
   const char* layout = rows               ? "rows"
                        : columns != 0     ? "columns"
                        : stride == packed ? "packed records"
@@ -151,6 +185,14 @@ ArrayView checked_view(const insitu_array& array, std::uint32_t use, const std::
                                         : size * static_cast<std::ptrdiff_t>(array.components);
   if (view.count == 0) return view;
   const auto* first = static_cast<const std::byte*>(array.component[0]);
+  if (view.rows) {
+    const std::optional<std::ptrdiff_t> distance = distance_of_rows(array, view.stride, size);
+    if (distance) {
+      first = reinterpret_cast<const std::byte*>(row_address(array, view.stride, 0));
+      view.rows = false;
+      view.stride = *distance;
+    }
+  }
   for (std::uint32_t c = 0; c < std::min<std::uint32_t>(array.components, 4); ++c) {
     if (view.rows || c == 0) {
       view.base[c] = first;

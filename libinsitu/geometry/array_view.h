@@ -20,7 +20,9 @@ struct ArrayVerdict {
 constexpr std::uint32_t use_payload = 100;
 ArrayVerdict judge_array(const insitu_array& array, std::uint32_t use);
 
-// As judge_array, but throws Error; `what` names the array in the message.
+// As judge_array, but throws Error; `what` names the array in the message. Rows that stand in one block at equal
+// distances become records, which is what they are: they are read without the table, and a permutation sees which other
+// arrays lie in the same records. It cannot see that of rows which stand anywhere.
 kernels::ArrayView checked_view(const insitu_array& array, std::uint32_t use, const std::string& what);
 
 // "f32", "u8", ...; "unknown".

@@ -138,6 +138,14 @@ const Case cases[] = {
      },
      INSITU_ERROR_INVALID_ARGUMENT,
      {"position", "aligned"}},
+    {"a row that is not there",
+     [](Input& i) {
+       i.table[items - 1] = nullptr;
+       i.position = insitu_array_records(INSITU_F64, 3, i.table, items, 0);
+       i.position.flags = INSITU_ARRAY_ROWS;
+     },
+     INSITU_ERROR_INVALID_ARGUMENT,
+     {"position", "row pointer", "NULL"}},
     {"a stride that misaligns",
      [](Input& i) { i.position.stride_bytes = 28; },
      INSITU_ERROR_INVALID_ARGUMENT,

@@ -125,6 +125,7 @@ enum {
  *   records (AoS)   component[0] = first scalar of item 0; stride_bytes = sizeof(record); component[1..] = NULL
  *   columns (SoA)   component[0..] = one pointer each; stride_bytes = distance from item to item within a column
  *   rows            INSITU_ARRAY_ROWS; component[0] = table of pointers, stride_bytes = distance in that table
+ * A permutation moves what rows hold; the table stays. Rows that stand anywhere must not be named twice in one set.
  * stride_bytes 0 means packed; it may be negative. Scalars are aligned to their own size. Nothing outside the scalars
  * is read, unless tail_bytes says how many bytes behind each component's last scalar are readable too. */
 typedef struct insitu_array {

@@ -21,6 +21,20 @@ insitu_array packed(std::uint32_t type, std::uint32_t components, std::uint64_t 
   return insitu_array_records(type, components, memory, count, 0);
 }
 
+insitu_array rows_of(std::array<const std::byte*, 10>& table) {
+  insitu_array array = insitu_array_records(INSITU_F64, 3, table.data(), table.size(), 0);
+  array.flags = INSITU_ARRAY_ROWS;
+  return array;
+}
+
+// Rows of 64 bytes, from the last to the first but for two that have changed places.
+std::array<const std::byte*, 10> row_table() {
+  std::array<const std::byte*, 10> table;
+  for (std::size_t i = 0; i < table.size(); ++i) table[i] = memory + 64 * (table.size() - i);
+  std::swap(table[3], table[5]);
+  return table;
+}
+
 struct Verdict {
   const char* what;
   insitu_array array;
@@ -39,6 +53,11 @@ std::vector<Verdict> verdicts() {
   constexpr auto bad = INSITU_ERROR_INVALID_ARGUMENT;
   constexpr auto unsupported = INSITU_ERROR_UNSUPPORTED;
   const auto base = packed(INSITU_F64, 3);
+  static auto good_table = row_table();
+  static auto table_with_null = row_table();
+  table_with_null[7] = nullptr;
+  static auto table_with_odd = row_table();
+  table_with_odd[9] += 4;
   return {
       {"packed f64", base, INSITU_USE_POSITION, INSITU_OK, "packed records of f64", 240},
       {"packed f32", packed(INSITU_F32, 3), INSITU_USE_POSITION, INSITU_OK, "packed records of f32", 120},
@@ -53,8 +72,10 @@ std::vector<Verdict> verdicts() {
        with(insitu_array_columns(INSITU_F32, memory, memory + 4, memory + 8, 10),
             [](insitu_array& a) { a.stride_bytes = 12; }),
        INSITU_USE_POSITION, INSITU_OK, "columns", 120},
-      {"rows", with(base, [](insitu_array& a) { a.flags = INSITU_ARRAY_ROWS; }), INSITU_USE_POSITION, INSITU_OK, "rows",
-       240},
+      {"rows", rows_of(good_table), INSITU_USE_POSITION, INSITU_OK, "rows", 240},
+      {"rows with a NULL among them", rows_of(table_with_null), INSITU_USE_POSITION, bad, "row pointer 7 is NULL"},
+      {"rows with an odd one among them", rows_of(table_with_odd), INSITU_USE_POSITION, bad,
+       "row pointer 9 is not aligned"},
       {"empty", insitu_array_records(INSITU_F64, 3, nullptr, 0, 0), INSITU_USE_POSITION, INSITU_OK, "empty", 0},
       {"radius", packed(INSITU_F32, 1), INSITU_USE_RADIUS, INSITU_OK, "f32", 40},
       {"u8 type", packed(INSITU_U8, 1), INSITU_USE_TYPE, INSITU_OK, "u8", 10},
@@ -149,6 +170,27 @@ TEST(CheckedView, ReadsWhatTheDescriptorSays) {
   insitu_array rows = insitu_array_records(INSITU_F64, 3, table, 3, 0);
   rows.flags = INSITU_ARRAY_ROWS;
   expect_rows(checked_view(rows, INSITU_USE_POSITION, ""), {1, 2, 0});
+}
+
+TEST(CheckedView, TakesRowsAtEqualDistancesAsRecords) {
+  for (const bool backwards : {false, true}) {
+    std::array<const std::byte*, 10> table;
+    for (std::size_t i = 0; i < table.size(); ++i) table[i] = memory + 64 * (backwards ? table.size() - i : i);
+    const kernels::ArrayView view = checked_view(rows_of(table), INSITU_USE_POSITION, "");
+    EXPECT_FALSE(view.rows);
+    EXPECT_EQ(view.stride, backwards ? -64 : 64);
+    for (std::uint32_t c = 0; c < 3; ++c)
+      for (std::uint64_t i = 0; i < table.size(); ++i) EXPECT_EQ(view.address(i, c), table[i] + 8 * c);
+  }
+}
+
+TEST(CheckedView, LeavesOtherRowsBehindTheirTable) {
+  std::array<const std::byte*, 10> table = row_table();
+  EXPECT_TRUE(checked_view(rows_of(table), INSITU_USE_POSITION, "").rows);
+  table.fill(memory);  // one row for all
+  EXPECT_TRUE(checked_view(rows_of(table), INSITU_USE_POSITION, "").rows);
+  for (std::size_t i = 0; i < table.size(); ++i) table[i] = memory + 8 * i;  // rows that overlap
+  EXPECT_TRUE(checked_view(rows_of(table), INSITU_USE_POSITION, "").rows);
 }
 
 TEST(CheckedView, EmptyArraysNeedNoMemory) {

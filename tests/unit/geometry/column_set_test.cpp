@@ -107,7 +107,7 @@ TEST(ColumnSet, OverlapsWithoutACommonRecordAreRefused) {
 TEST(ColumnSet, RowsMoveByTheirPointers) {
   float data[30] = {};
   float* table[10];
-  for (int i = 0; i < 10; ++i) table[i] = &data[3 * i];
+  for (int i = 0; i < 10; ++i) table[i] = &data[3 * (i * 7 % 10)];
   insitu_array rows = insitu_array_records(INSITU_F32, 3, table, 10, 0);
   rows.flags = INSITU_ARRAY_ROWS;
   ColumnSet set;
@@ -115,6 +115,25 @@ TEST(ColumnSet, RowsMoveByTheirPointers) {
   ASSERT_EQ(set.columns().size(), 1u);
   EXPECT_TRUE(set.columns()[0].rows);
   EXPECT_EQ(set.columns()[0].bytes, 12u);
+}
+
+TEST(ColumnSet, RowsOfOneBlockAreTheRecordsTheyStandIn) {
+  double data[60] = {};
+  double* table[10];
+  for (int i = 0; i < 10; ++i) table[i] = &data[6 * i];
+  insitu_array rows = insitu_array_records(INSITU_F64, 3, table, 10, 0);
+  rows.flags = INSITU_ARRAY_ROWS;
+  ColumnSet set;
+  set.add(checked_view(rows, INSITU_USE_POSITION, ""), "position");
+  // The same coordinates, and what stands behind them.
+  set.add(checked_view(insitu_array_records(INSITU_F64, 3, data, 10, 48), INSITU_USE_ATTRIBUTE, ""), "x");
+  set.add(checked_view(insitu_array_records(INSITU_F64, 3, data + 3, 10, 48), INSITU_USE_ATTRIBUTE, ""), "v");
+  std::size_t bytes = 0;
+  for (const MovedColumn& column : set.columns()) {
+    EXPECT_FALSE(column.rows);
+    bytes += column.bytes;
+  }
+  EXPECT_EQ(bytes, 48u);
 }
 
 TEST(ColumnSet, EmptyArraysAddNothing) {

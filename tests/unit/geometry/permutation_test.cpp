@@ -152,7 +152,7 @@ TEST(Permute, MovesWhatRowsHold) {
   std::vector<double> data = make_cloud(Shape::uniform, count, 1.0, random);
   std::vector<double> before = data;
   std::vector<double*> table;
-  for (std::uint64_t i = 0; i < count; ++i) table.push_back(&data[3 * i]);
+  for (std::uint64_t i = 0; i < count; ++i) table.push_back(&data[3 * (i * 7 % count)]);
   const std::vector<double*> table_before = table;
   insitu_array rows = insitu_array_records(INSITU_F64, 3, table.data(), count, 0);
   rows.flags = INSITU_ARRAY_ROWS;
