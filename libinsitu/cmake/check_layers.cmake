@@ -90,7 +90,7 @@ plant(libinsitu/geometry/pkd/a.h "#include <hwy/highway.h>" "Highway may be incl
 plant(libinsitu/report/a.cpp "#include <nlohmann/json.hpp>" "")
 plant(libinsitu/report/a.cpp "#include \"image/framebuffer.h\"" "report must not include image")
 plant(libinsitu/image/a.cpp "#include <OpenImageIO/imageio.h>" "OpenImageIO may be included only by")
-plant(libinsitu/image/image_writer.cpp "#include <OpenImageIO/imageio.h>" "")
+plant(libinsitu/image/encoder.cpp "#include <OpenImageIO/imageio.h>" "")
 plant(libinsitu/core/a.h "#include \"kernels/ray.h\"" "core must not include kernels")
 plant(libinsitu/core/a.h "#include <nlohmann/json.hpp>" "nlohmann-json may be included only by")
 plant(libinsitu/core/a.h "#include <yaml-cpp/yaml.h>" "yaml-cpp may be included only by")

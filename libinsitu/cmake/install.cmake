@@ -15,8 +15,12 @@ set_target_properties(insitu PROPERTIES
   VERSION ${PROJECT_VERSION}
   SOVERSION ${insitu_abi}
   LINK_DEPENDS "${insitu_map}"
+  INSTALL_RPATH "$ORIGIN"  # where insitu_image is
   EXPORT_NAME insitu)
+target_link_options(insitu_image PRIVATE "LINKER:--version-script=${insitu_map}")
+set_target_properties(insitu_image PROPERTIES LINK_DEPENDS "${insitu_map}")
 
+install(TARGETS insitu_image LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} NAMELINK_SKIP)
 install(TARGETS insitu EXPORT insituTargets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
   INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})

@@ -48,7 +48,7 @@ set(third_party_names Embree OpenImageIO Highway nlohmann-json yaml-cpp GLM oneT
 set(third_party_headers_Embree "^embree3/")
 set(third_party_files_Embree "^libinsitu/scene/embree_bridge\\.")
 set(third_party_headers_OpenImageIO "^OpenImageIO/")
-set(third_party_files_OpenImageIO "^libinsitu/image/image_writer\\.cpp$")
+set(third_party_files_OpenImageIO "^libinsitu/image/encoder\\.cpp$")
 set(third_party_headers_Highway "^hwy/")
 set(third_party_files_Highway "^kernels/")
 set(third_party_headers_nlohmann-json "^nlohmann/")
@@ -68,7 +68,7 @@ set(third_party_files_zlib "^mini-apps/")
 
 # Headers of C++ have no ending; of C and POSIX these are in use. Kernels get those of C++ only.
 set(standard_cxx_header "^[a-z_]+$")
-set(standard_c_header "^(assert|ctype|errno|fcntl|float|inttypes|limits|locale|math|setjmp|signal|stdarg|stdbool|stddef|stdint|stdio|stdlib|string|time|unistd|xmmintrin|sys/[a-z]+)\\.h$")
+set(standard_c_header "^(assert|ctype|dlfcn|errno|fcntl|float|inttypes|limits|locale|math|setjmp|signal|stdarg|stdbool|stddef|stdint|stdio|stdlib|string|time|unistd|xmmintrin|sys/[a-z]+)\\.h$")
 
 # Layer of a file given relative to the root; "" outside of all layers.
 function(layer_of file out)

@@ -1,5 +1,4 @@
-// Finished images to files: PNG for looking at, EXR for computing with. image_writer.cpp is the one file that knows
-// OpenImageIO.
+// Finished images to files: PNG for looking at, EXR for computing with.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +22,10 @@ struct WriteResult {
 //         index as uint32 `id` (low word), with `id.hi` (high word) only when an index needs it. Background: all ones.
 // The file is complete or absent: it grows under a temporary name in the same folder and is renamed at the end. When
 // anything fails the temporary file is gone and a file that `path` named before is as it was.
-// Nothing is printed, no thread is started, and no process-wide setting differs afterwards.
-// Status: ok, invalid_argument (an empty frame), unsupported (another ending), io, out_of_memory. Does not throw.
+// Nothing is printed, and no process-wide setting differs afterwards. The first call loads the encoder, which takes a
+// fifth of a second and starts four threads that sleep (see encoder.h); no other call starts any.
+// Status: ok, invalid_argument (an empty frame), unsupported (another ending; no encoder), io, out_of_memory. Does not
+// throw.
 WriteResult write_image(const FrameBuffer& frame, const ImageMetadata& metadata, const std::string& path) noexcept;
 
 }  // namespace insitu

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <atomic>
 #include <filesystem>
+#include <fstream>
+#include <string>
 #include <thread>
 
 #include "api_test_tools.h"
@@ -88,8 +90,31 @@ void work(std::uint32_t max_threads, std::uint32_t order) {
   EXPECT_TRUE(works(context, insitu_step_end(context)));
 }
 
+// The first file loads the encoder, which is OpenImageIO and all that Debian links to it: log4cplus among it starts
+// four threads, which sleep.
+constexpr int threads_of_encoder = 4;
+void write_first_file() {
+  const testing::TemporaryFolder folder;
+  const Context context(1);
+  const insitu_view view = testing::make_view(context);
+  const insitu_image image = testing::make_image(context, 4, 4);
+  insitu_step_begin(context, 0, 0.0);
+  insitu_commit(context);
+  insitu_render(context, view, image);
+  insitu_image_write(context, image, folder.file("a.png").c_str());
+  EXPECT_TRUE(works(context, insitu_step_end(context)));
+}
+
+bool is_loaded(const std::string& library) {
+  std::ifstream maps("/proc/self/maps");
+  for (std::string line; std::getline(maps, line);)
+    if (line.find(library) != std::string::npos) return true;
+  return false;
+}
+
 // `extra` threads besides the caller's, and no more, whatever is done.
 void expect_at_most(int extra, std::uint32_t max_threads) {
+  write_first_file();
   Sampler sampler;
   const int before = thread_count();
   const int started = threads_started;
@@ -105,6 +130,31 @@ TEST(Threads, TheCounterCounts) {
   EXPECT_EQ(threads_started, started + 1);
 }
 
+// What writes no image is spared the encoder with all its libraries.
+TEST(Threads, TheEncoderComesWithTheFirstFile) {
+  if (!is_loaded("libOpenImageIO")) {  // no other test has written one
+    const int started = threads_started;
+    const Context context(1);
+    const insitu_geometry geometry = testing::make_particles(context);
+    const insitu_view view = testing::make_view(context);
+    const insitu_image image = testing::make_image(context, 16, 16);
+    Cloud cloud(1000, 1);
+    insitu_step_begin(context, 0, 0.0);
+    insitu_particles_update(context, geometry, &cloud.desc);
+    insitu_commit(context);
+    insitu_render(context, view, image);
+    EXPECT_TRUE(works(context, insitu_step_end(context)));
+    EXPECT_FALSE(is_loaded("libOpenImageIO"));
+    EXPECT_EQ(threads_started, started);
+    write_first_file();
+    EXPECT_LE(threads_started - started, threads_of_encoder);
+  }
+  EXPECT_TRUE(is_loaded("libOpenImageIO"));
+  const int started = threads_started;
+  write_first_file();
+  EXPECT_EQ(threads_started, started);
+}
+
 TEST(Threads, OneIsTheCallersOwn) { expect_at_most(0, 1); }
 TEST(Threads, TwoAreOneMore) { expect_at_most(1, 2); }
 TEST(Threads, NoLimitIsThatOfTheMachine) {
@@ -118,6 +168,7 @@ TEST(Threads, TheHostsOwnLimitHolds) {
 
 // Several contexts, one after another and at once, share what there is.
 TEST(Threads, ManyContexts) {
+  write_first_file();
   const int extra = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1);
   const int before = thread_count();
   std::vector<std::unique_ptr<Context>> contexts;

@@ -3,7 +3,8 @@
 #   cmake -DBUILD=<build folder> -DHOST=<host folder> -DWORK=<scratch folder> -DC_COMPILER=cc -DC_FLAGS=... -P this
 cmake_minimum_required(VERSION 3.25)
 function(run)
-  execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  execute_process(COMMAND ${ARGN} WORKING_DIRECTORY "${WORK}" RESULT_VARIABLE result OUTPUT_VARIABLE output
+    ERROR_VARIABLE output)
   if(NOT result EQUAL 0)
     list(JOIN ARGN " " command)
     message(FATAL_ERROR "failed (${result}): ${command}\n${output}")
@@ -48,3 +49,12 @@ string(STRIP "${output}" libdir)
 run("${C_COMPILER}" -std=c99 ${c_flags} "${HOST}/host.c" ${flags} "-Wl,-rpath,${libdir}" -o "${WORK}/host")
 run("${WORK}/host")
 expect_version("${output}")
+
+# A library that has lost its encoder says so, and lives on.
+message(STATUS "without the encoder")
+file(GLOB_RECURSE encoder "${WORK}/prefix/*/libinsitu_image.so*")
+file(REMOVE ${encoder})
+execute_process(COMMAND "${WORK}/host" WORKING_DIRECTORY "${WORK}" RESULT_VARIABLE result ERROR_VARIABLE output)
+if(NOT result EQUAL 2 OR NOT output MATCHES "host.png.*the image encoder cannot be loaded.*libinsitu_image")
+  message(FATAL_ERROR "a missing encoder ended the host with ${result}:\n${output}")
+endif()

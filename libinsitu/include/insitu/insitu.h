@@ -360,8 +360,9 @@ INSITU_API insitu_status insitu_image_create(insitu_context context, const insit
 INSITU_API insitu_status insitu_render(insitu_context context, insitu_view view, insitu_image image);
 /* Writes ".png" (sRGB, colour only) or ".exr" (linear, every channel of the image). `pattern` may hold {step}, or
  * {step:6} for zero padding to six digits, {time} or {time:3} for three digits behind the point, and {{ for a brace.
- * The file appears under a temporary name in the same folder and is renamed when it is complete. Errors: io (the text
- * names the file and the reason), unsupported (other endings). */
+ * The file appears under a temporary name in the same folder and is renamed when it is complete. The first image of a
+ * process loads the encoder, libinsitu_image. Errors: io (the text names the file and the reason), unsupported (other
+ * endings, or no encoder). */
 INSITU_API insitu_status insitu_image_write(insitu_context context, insitu_image image, const char* pattern);
 /* A view of the library's own pixels, row by row from the top; valid until the next render into or destruction of this
  * image. `channel` is one INSITU_CHANNEL_*. */
