@@ -44,6 +44,24 @@ HWY_INLINE std::uint32_t MaskBits(D d, Mask mask) {
 constexpr double f32_unit = 5.9604644775390625e-8;
 constexpr double f64_unit = 1.1102230246251565e-16;
 
+// Where lines pass points: how far along the line, and at what distance, squared.
+template <class V>
+struct Approach {
+  V along;
+  V distance2;
+};
+
+// `m` is the point relative to a point of the line, `d` the line's direction, of unit length. The foot of the
+// perpendicular is subtracted before anything is squared, which keeps the digits that m.m - (m.d)^2 would lose.
+template <class V>
+HWY_INLINE Approach<V> ApproachOf(V mx, V my, V mz, V dx, V dy, V dz) {
+  const V along = hn::MulAdd(mx, dx, hn::MulAdd(my, dy, hn::Mul(mz, dz)));
+  const V px = hn::NegMulAdd(along, dx, mx);
+  const V py = hn::NegMulAdd(along, dy, my);
+  const V pz = hn::NegMulAdd(along, dz, mz);
+  return {along, hn::MulAdd(px, px, hn::MulAdd(py, py, hn::Mul(pz, pz)))};
+}
+
 // What f32 tests of particles need of a ray: everything relative to a point q of the ray.
 //
 // A test computes m = c - q and p = m - (m.d) d for a centre c at most `reach` away from q. Each of the three
@@ -189,11 +207,7 @@ HWY_INLINE bool VisitLeaf(const PkdTree& tree, const Positions& positions, std::
   // One vector of particles, given relative to q.
   const auto visit = [&](V mx, V my, V mz, std::size_t first, std::size_t valid) HWY_ATTR -> bool {
     const V r = uniform ? radius : hn::LoadU(d, radii + first);
-    const V b = hn::MulAdd(mx, dx, hn::MulAdd(my, dy, hn::Mul(mz, dz)));
-    const V px = hn::NegMulAdd(b, dx, mx);
-    const V py = hn::NegMulAdd(b, dy, my);
-    const V pz = hn::NegMulAdd(b, dz, mz);
-    const V distance2 = hn::MulAdd(px, px, hn::MulAdd(py, py, hn::Mul(pz, pz)));
+    const auto [b, distance2] = ApproachOf(mx, my, mz, dx, dy, dz);
     const V r2 = hn::Mul(r, r);
     auto candidate = hn::Le(distance2, r2);
     if (hn::AllFalse(d, candidate)) return false;

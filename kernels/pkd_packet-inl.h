@@ -312,11 +312,7 @@ class PacketTraversal {
       const V mx = hn::Sub(cx, hn::Load(d, packet_.origin(0) + i));
       const V my = hn::Sub(cy, hn::Load(d, packet_.origin(1) + i));
       const V mz = hn::Sub(cz, hn::Load(d, packet_.origin(2) + i));
-      const V b = hn::MulAdd(mx, dx, hn::MulAdd(my, dy, hn::Mul(mz, dz)));
-      const V px = hn::NegMulAdd(b, dx, mx);
-      const V py = hn::NegMulAdd(b, dy, my);
-      const V pz = hn::NegMulAdd(b, dz, mz);
-      const V distance2 = hn::MulAdd(px, px, hn::MulAdd(py, py, hn::Mul(pz, pz)));
+      const auto [b, distance2] = ApproachOf(mx, my, mz, dx, dy, dz);
       const auto close = hn::Le(distance2, r2);
       if (HWY_LIKELY(hn::AllFalse(d, close))) continue;
       const V s = hn::Sqrt(hn::Max(hn::Sub(r2, distance2), hn::Zero(d)));
@@ -371,12 +367,7 @@ class PacketTraversal {
       const W mx = hn::Sub(x, hn::Set(d, o[0]));
       const W my = hn::Sub(y, hn::Set(d, o[1]));
       const W mz = hn::Sub(z, hn::Set(d, o[2]));
-      const W b = hn::MulAdd(mx, dx, hn::MulAdd(my, dy, hn::Mul(mz, dz)));
-      const W px = hn::NegMulAdd(b, dx, mx);
-      const W py = hn::NegMulAdd(b, dy, my);
-      const W pz = hn::NegMulAdd(b, dz, mz);
-      const W distance2 = hn::MulAdd(px, px, hn::MulAdd(py, py, hn::Mul(pz, pz)));
-      std::uint32_t bits = MaskBits(d, hn::Le(distance2, wide2));
+      std::uint32_t bits = MaskBits(d, hn::Le(ApproachOf(mx, my, mz, dx, dy, dz).distance2, wide2));
       bits &= ~std::uint32_t{0} >> (32 - std::min(lanes, count - first));
       // What the vector before has seen already.
       if (first < done) bits &= ~std::uint32_t{0} << (done - first);

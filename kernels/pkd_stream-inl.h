@@ -314,11 +314,7 @@ class AnyHitStream {
         const V mx = hn::Sub(x, hn::Set(d, ray.origin[0]));
         const V my = hn::Sub(y, hn::Set(d, ray.origin[1]));
         const V mz = hn::Sub(z, hn::Set(d, ray.origin[2]));
-        const V b = hn::MulAdd(mx, dx, hn::MulAdd(my, dy, hn::Mul(mz, dz)));
-        const V px = hn::NegMulAdd(b, dx, mx);
-        const V py = hn::NegMulAdd(b, dy, my);
-        const V pz = hn::NegMulAdd(b, dz, mz);
-        const V distance2 = hn::MulAdd(px, px, hn::MulAdd(py, py, hn::Mul(pz, pz)));
+        const auto [b, distance2] = ApproachOf(mx, my, mz, dx, dy, dz);
         const auto close = hn::Le(distance2, r2);
         if (HWY_LIKELY(hn::AllFalse(d, close))) continue;
         const V s = hn::Sqrt(hn::Max(hn::Sub(r2, distance2), hn::Zero(d)));

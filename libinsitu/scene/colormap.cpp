@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "scene/srgb.h"
+
 namespace insitu {
 namespace {
 
@@ -17,12 +19,9 @@ constexpr size_t fewest_steps = 1024;
 
 double clamped(double value) { return value > 0.0 ? std::min(value, 1.0) : 0.0; }  // NaN becomes 0
 
-float to_linear(double srgb) {  // IEC 61966-2-1
-  return static_cast<float>(srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4));
-}
-
 Rgba to_linear(const Color& srgb) {
-  return {to_linear(srgb[0]), to_linear(srgb[1]), to_linear(srgb[2]), static_cast<float>(srgb[3])};
+  return {static_cast<float>(linear_of_srgb(srgb[0])), static_cast<float>(linear_of_srgb(srgb[1])),
+          static_cast<float>(linear_of_srgb(srgb[2])), static_cast<float>(srgb[3])};
 }
 
 Color color_at(std::span<const double> rgba, size_t index) {

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "scene/colormap.h"
+#include "scene/srgb.h"
 
 namespace insitu {
 namespace {
@@ -90,17 +91,12 @@ struct Msh {
 
 constexpr Rgb white{0.95047, 1.0, 1.08883};  // D65, XYZ
 
-double decode(double srgb) { return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4); }
-double encode(double linear) {
-  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
-}
-
 // CIELAB's cube root with its straight piece near 0, and the way back.
 double lab_root(double t) { return t > 216.0 / 24389.0 ? std::cbrt(t) : (24389.0 / 27.0 * t + 16.0) / 116.0; }
 double lab_cube(double t) { return t > 6.0 / 29.0 ? t * t * t : (116.0 * t - 16.0) * 27.0 / 24389.0; }
 
 Msh msh_of(const Rgb& srgb) {
-  const double r = decode(srgb[0]), g = decode(srgb[1]), b = decode(srgb[2]);
+  const double r = linear_of_srgb(srgb[0]), g = linear_of_srgb(srgb[1]), b = linear_of_srgb(srgb[2]);
   const double x = lab_root((0.4124564 * r + 0.3575761 * g + 0.1804375 * b) / white[0]);
   const double y = lab_root((0.2126729 * r + 0.7151522 * g + 0.0721750 * b) / white[1]);
   const double z = lab_root((0.0193339 * r + 0.1191920 * g + 0.9503041 * b) / white[2]);
@@ -117,8 +113,9 @@ Rgb srgb_of(const Msh& color) {
   const double x = white[0] * lab_cube(y_root + lab_a / 500.0);
   const double y = white[1] * lab_cube(y_root);
   const double z = white[2] * lab_cube(y_root - lab_b / 200.0);
-  return {encode(3.2404542 * x - 1.5371385 * y - 0.4985314 * z), encode(-0.9692660 * x + 1.8760108 * y + 0.0415560 * z),
-          encode(0.0556434 * x - 0.2040259 * y + 1.0572252 * z)};
+  return {srgb_of_linear(3.2404542 * x - 1.5371385 * y - 0.4985314 * z),
+          srgb_of_linear(-0.9692660 * x + 1.8760108 * y + 0.0415560 * z),
+          srgb_of_linear(0.0556434 * x - 0.2040259 * y + 1.0572252 * z)};
 }
 
 // The unsaturated middle as seen from the colour `end`.

@@ -86,7 +86,8 @@ TEST_P(ReadingOnly, LeavesTheTrajectoryAsItIsInMemory) {
   EXPECT_GT(picture.cost().rays, 12u * 64 * 48);
 }
 
-INSTANTIATE_TEST_SUITE_P(Orders, ReadingOnly, testing::Values(INSITU_ORDER_INDEX, INSITU_ORDER_COPY));
+INSTANTIATE_TEST_SUITE_P(Orders, ReadingOnly, testing::Values(INSITU_ORDER_INDEX, INSITU_ORDER_COPY),
+                         [](const auto& info) { return info.param == INSITU_ORDER_INDEX ? "index" : "copy"; });
 
 // Records move, atoms do not notice: forces are summed in an order that does not depend on places in the array.
 TEST_F(PictureTest, PermutingLeavesTheTrajectoryOfEveryAtom) {
