@@ -188,7 +188,7 @@ ArrayView checked_view(const insitu_array& array, std::uint32_t use, const std::
   if (view.rows) {
     const std::optional<std::ptrdiff_t> distance = distance_of_rows(array, view.stride, size);
     if (distance) {
-      first = reinterpret_cast<const std::byte*>(row_address(array, view.stride, 0));
+      first = kernels::load<const std::byte*>(first);
       view.rows = false;
       view.stride = *distance;
     }

@@ -8,7 +8,7 @@ namespace insitu {
 namespace {
 
 std::string reason_of_loader() {
-  const char* text = dlerror();
+  const char* text = dlerror();  // NOLINT(concurrency-mt-unsafe): every thread has its own
   return text != nullptr ? text : "unknown reason";
 }
 
