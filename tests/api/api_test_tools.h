@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "insitu/insitu.h"
+#include "temporary_folder.h"
 
 namespace insitu::testing {
 
@@ -248,33 +249,6 @@ struct Studio {
   insitu_geometry geometry;
   insitu_view view;
   insitu_image image;
-};
-
-// A folder of its own for a test, gone with the object.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "insitu_api_XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  std::string path() const { return path_.string(); }
-  std::string file(const std::string& name) const { return (path_ / name).string(); }
-  std::vector<std::string> names() const {
-    std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(path_)) names.push_back(entry.path().filename());
-    return names;
-  }
-
- private:
-  std::filesystem::path path_;
 };
 
 inline std::string text_of(const std::string& path) {

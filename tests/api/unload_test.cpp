@@ -6,6 +6,7 @@
 #include <string>
 
 #include "insitu/insitu.h"
+#include "temporary_folder.h"
 
 namespace {
 
@@ -52,18 +53,16 @@ void use(void* library) {
   insitu_image image;
   ASSERT_EQ(insitu_image_create_found(context, &image_desc, &image), INSITU_OK);
 
-  std::string folder = (std::filesystem::temp_directory_path() / "insitu_unload_XXXXXX").string();
-  ASSERT_NE(mkdtemp(folder.data()), nullptr);
+  const insitu::testing::TemporaryFolder folder;
   desc.position = &position;
   insitu_step_begin_found(context, 0, 0.0);
   for (const insitu_geometry geometry : geometries) insitu_particles_update_found(context, geometry, &desc);
   insitu_commit_found(context);
   insitu_render_found(context, view, image);
-  insitu_image_write_found(context, image, (folder + "/a.png").c_str());
-  insitu_image_write_found(context, image, (folder + "/a.exr").c_str());
+  insitu_image_write_found(context, image, folder.file("a.png").c_str());
+  insitu_image_write_found(context, image, folder.file("a.exr").c_str());
   EXPECT_EQ(insitu_step_end_found(context), INSITU_OK) << insitu_error_text_found(context);
   insitu_context_destroy_found(context);
-  std::filesystem::remove_all(folder);
 }
 
 TEST(Unload, AndLoadAgain) {

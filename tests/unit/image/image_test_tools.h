@@ -14,38 +14,12 @@
 #include "image/framebuffer.h"
 #include "image/image_metadata.h"
 #include "insitu/insitu.h"
+#include "temporary_folder.h"
 
 namespace insitu::testing {
 
 constexpr uint32_t all_channels =
     INSITU_CHANNEL_COLOR | INSITU_CHANNEL_DEPTH | INSITU_CHANNEL_POSITION | INSITU_CHANNEL_NORMAL | INSITU_CHANNEL_ITEM;
-
-// A folder of its own for a test, gone with the object.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "insitu_image_XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  std::string file(const std::string& name) const { return (path_ / name).string(); }
-  const std::filesystem::path& path() const { return path_; }
-  std::vector<std::string> names() const {
-    std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(path_)) names.push_back(entry.path().filename());
-    return names;
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 inline std::vector<char> bytes_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);

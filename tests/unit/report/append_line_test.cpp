@@ -14,22 +14,14 @@
 #include <vector>
 
 #include "report/report.h"
+#include "temporary_folder.h"
 
 namespace insitu {
 namespace {
 
 class AppendLine : public ::testing::Test {
  protected:
-  AppendLine() {
-    std::string name = (std::filesystem::temp_directory_path() / "insitu_report_XXXXXX").string();
-    if (mkdtemp(name.data()) != nullptr) folder_ = name;
-  }
-  ~AppendLine() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-
-  std::string file(const std::string& name) const { return (folder_ / name).string(); }
+  std::string file(const std::string& name) const { return folder_.file(name); }
 
   static std::string content(const std::string& path) {
     std::ifstream stream(path, std::ios::binary);
@@ -41,7 +33,7 @@ class AppendLine : public ::testing::Test {
     EXPECT_EQ(result.message, "cannot append to \"" + path + "\": " + reason);
   }
 
-  std::filesystem::path folder_;
+  testing::TemporaryFolder folder_;
 };
 
 TEST_F(AppendLine, MakesTheFileAndAdds) {
@@ -78,7 +70,7 @@ TEST_F(AppendLine, DeviceThatIsAlwaysFull) {
 TEST_F(AppendLine, HalfALineIsCutOffWhenTheDiskIsFull) {
   const bool mounted = geteuid() == 0 && unshare(CLONE_NEWNS) == 0 &&
                        mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
-                       mount("insitu_test", folder_.c_str(), "tmpfs", 0, "size=16k") == 0;
+                       mount("insitu_test", folder_.path().c_str(), "tmpfs", 0, "size=16k") == 0;
   if (!mounted) GTEST_SKIP() << "needs the right to mount a small tmpfs";
   const std::string path = file("r.jsonl");
   ASSERT_EQ(append_line(path, "first").status, INSITU_OK);
@@ -86,7 +78,7 @@ TEST_F(AppendLine, HalfALineIsCutOffWhenTheDiskIsFull) {
   EXPECT_EQ(content(path), "first\n");
   EXPECT_EQ(append_line(path, "second").status, INSITU_OK) << "the next one works";
   EXPECT_EQ(content(path), "first\nsecond\n");
-  EXPECT_EQ(umount2(folder_.c_str(), MNT_DETACH), 0);
+  EXPECT_EQ(umount2(folder_.path().c_str(), MNT_DETACH), 0);
 }
 
 TEST_F(AppendLine, LimitOnFileSizeDoesNotKill) {
