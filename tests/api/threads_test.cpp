@@ -112,6 +112,8 @@ bool is_loaded(const std::string& library) {
   return false;
 }
 
+const bool encoder_loaded_at_start = is_loaded("libOpenImageIO");
+
 // `extra` threads besides the caller's, and no more, whatever is done.
 void expect_at_most(int extra, std::uint32_t max_threads) {
   write_first_file();
@@ -132,6 +134,7 @@ TEST(Threads, TheCounterCounts) {
 
 // What writes no image is spared the encoder with all its libraries.
 TEST(Threads, TheEncoderComesWithTheFirstFile) {
+  EXPECT_FALSE(encoder_loaded_at_start);
   if (!is_loaded("libOpenImageIO")) {  // no other test has written one
     const int started = threads_started;
     const Context context(1);
