@@ -22,13 +22,10 @@ class PlacedPositions {
   T key(std::uint64_t place, int axis) const {
     return load<T>(base_[axis] + static_cast<std::ptrdiff_t>(place) * stride_);
   }
-  // Where reading a centre takes two reads, one after the other, prefetch() asks for the first and prefetch_behind()
-  // for the second.
   static constexpr bool is_indirect = false;
   void prefetch(std::uint64_t place) const {
     __builtin_prefetch(base_[0] + static_cast<std::ptrdiff_t>(place) * stride_);
   }
-  void prefetch_behind(std::uint64_t) const {}
   void centre(std::uint64_t place, double out[3]) const {
     for (int c = 0; c < 3; ++c) out[c] = static_cast<double>(key(place, c));
   }
@@ -61,6 +58,8 @@ class IndexedPositions {
   T key(std::uint64_t place, int axis) const {
     return load<T>(base_[axis] + static_cast<std::ptrdiff_t>(index_[place]) * stride_);
   }
+  // Reading a centre takes two reads, one after the other: prefetch() asks for the first, prefetch_behind() for the
+  // second.
   static constexpr bool is_indirect = true;
   void prefetch(std::uint64_t place) const { __builtin_prefetch(index_ + place); }
   void prefetch_behind(std::uint64_t place) const {
@@ -92,7 +91,6 @@ class GeneralPositions {
   }
   static constexpr bool is_indirect = false;
   void prefetch(std::uint64_t) const {}
-  void prefetch_behind(std::uint64_t) const {}
   void centre(std::uint64_t place, double out[3]) const { tree_.centre(place, out); }
   void centre_f32(std::uint64_t place, float out[3]) const {
     double centre[3];

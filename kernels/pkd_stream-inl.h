@@ -158,7 +158,7 @@ class AnyHitStream {
   // stream has seen the whole tree.
   HWY_INLINE bool Step(Walk& walk) {
     Node& now = walk.now;
-    if (Positions::is_indirect) {
+    if constexpr (Positions::is_indirect) {
       walk.is_looked_up = !walk.is_looked_up;
       if (walk.is_looked_up) {
         PrefetchBehind(now.begin, now.end);
