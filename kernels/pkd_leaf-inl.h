@@ -13,6 +13,7 @@
 #include <cstring>
 #include <type_traits>
 
+#include "kernels/pkd_margin.h"
 #include "kernels/pkd_positions.h"
 #include "kernels/pkd_visitors.h"
 
@@ -39,10 +40,6 @@ HWY_INLINE std::uint32_t MaskBits(D d, Mask mask) {
     return bits;
   }
 }
-
-// Half of the spacing of numbers at 1: the relative error of one operation.
-constexpr double f32_unit = 5.9604644775390625e-8;
-constexpr double f64_unit = 1.1102230246251565e-16;
 
 // Where lines pass points: how far along the line, and at what distance, squared.
 template <class V>

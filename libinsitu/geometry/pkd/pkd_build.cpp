@@ -44,11 +44,11 @@ void put_preferred_first(Store& store, std::uint64_t begin, std::uint64_t end, P
 // Builds over [begin, end) on the calling thread.
 template <class Store, class Prefer>
 void build_serial(Store& store, std::uint64_t begin, std::uint64_t end, PkdBox<typename Store::Key> box,
-                  const Prefer& prefer) {
-  while (end - begin > kernels::pkd_leaf_size) {
+                  std::uint64_t leaf, const Prefer& prefer) {
+  while (end - begin > leaf) {
     if (box.is_point()) return put_preferred_first(store, begin, end, prefer);
     const Halves<Store> halves = split(store, begin, end, box);
-    build_serial(store, begin, halves.mid, halves.left, prefer);
+    build_serial(store, begin, halves.mid, halves.left, leaf, prefer);
     begin = halves.mid + 1;
     box = halves.right;
   }
@@ -56,7 +56,7 @@ void build_serial(Store& store, std::uint64_t begin, std::uint64_t end, PkdBox<t
 
 // Builds a subtree that fits into the cache there, and moves the data once.
 template <class Store>
-void build_block(Store& store, std::uint64_t begin, std::uint64_t end, const PkdBox<typename Store::Key>& box) {
+void build_block(Store& store, std::uint64_t begin, std::uint64_t end, const PkdBox<typename Store::Key>& box, std::uint64_t leaf) {
   using Item = PkdItem<typename Store::Key>;
   const auto n = static_cast<std::size_t>(end - begin);
   const std::unique_ptr<Item[]> items(new Item[n]);
@@ -65,21 +65,21 @@ void build_block(Store& store, std::uint64_t begin, std::uint64_t end, const Pkd
     items[i].local = static_cast<std::uint32_t>(i);
   }
   kernels::RecordStore<Item> scratch(items.get());
-  build_serial(scratch, 0, n, box, [&](std::uint64_t a, std::uint64_t b) {
+  build_serial(scratch, 0, n, box, leaf, [&](std::uint64_t a, std::uint64_t b) {
     return store.prefer(begin + items[a].local, begin + items[b].local);
   });
   store.apply(begin, items.get(), n);
 }
 
 template <class Store>
-void build_parallel(Store& store, std::uint64_t begin, std::uint64_t end, const PkdBox<typename Store::Key>& box) {
+void build_parallel(Store& store, std::uint64_t begin, std::uint64_t end, const PkdBox<typename Store::Key>& box, std::uint64_t leaf) {
   const FloatEnvironment guard;
-  if (end - begin <= block_size<typename Store::Key>) return build_block(store, begin, end, box);
+  if (end - begin <= block_size<typename Store::Key>) return build_block(store, begin, end, box, leaf);
   if (box.is_point())
     return put_preferred_first(store, begin, end, [&](std::uint64_t a, std::uint64_t b) { return store.prefer(a, b); });
   const Halves<Store> halves = split(store, begin, end, box);
-  tbb::parallel_invoke([&] { build_parallel(store, begin, halves.mid, halves.left); },
-                       [&] { build_parallel(store, halves.mid + 1, end, halves.right); });
+  tbb::parallel_invoke([&] { build_parallel(store, begin, halves.mid, halves.left, leaf); },
+                       [&] { build_parallel(store, halves.mid + 1, end, halves.right, leaf); });
 }
 
 template <class Store>
@@ -91,7 +91,7 @@ void build(const PkdTree& tree, Store&& store) {
     box.lower[axis] = static_cast<Key>(tree.lower[axis]);
     box.upper[axis] = static_cast<Key>(tree.upper[axis]);
   }
-  build_parallel(store, 0, tree.count, box);
+  build_parallel(store, 0, tree.count, box, tree.built_leaf);
 }
 
 // Only packed coordinates, and nothing that would have to move along.
