@@ -9,9 +9,7 @@
 
 #include "kernels/pkd_enter-inl.h"
 #include "kernels/treelet_leaf-inl.h"
-#include "kernels/treelet_node-inl.h"
-#include "kernels/treelet_order.h"
-#include "kernels/treelets.h"
+#include "kernels/treelet_walk-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace insitu::kernels::HWY_NAMESPACE {
@@ -30,6 +28,9 @@ struct RayBeam {
   float direction[3];
   float start;
   float growth;
+  float latest;  // the farthest distance that any of its rays still looks at
+  std::uint32_t packet;
+  std::uint32_t active;  // its rays
 };
 
 class TreeletPacket {
@@ -38,11 +39,15 @@ class TreeletPacket {
 
   EnteredRays lanes;
   HWY_ALIGN float start[3][size];  // - origin / direction
-  HWY_ALIGN float r_place[size];
-  RayBeam beam;
+  // Candidates noted in f32, a lane each: earliest and, as lanes.t_high, latest distance; of lanes in `noted`.
+  HWY_ALIGN float best_earliest[size];
+  HWY_ALIGN float t_certain[size];  // candidates begin behind it
+  HWY_ALIGN std::uint32_t best_place[size];
+  std::uint32_t noted;
+  std::uint32_t first_ray;
 
   // False: the rays of `active` go too different ways for a beam.
-  bool MakeBeam(std::uint32_t active, double margin) {
+  bool MakeBeam(std::uint32_t active, double margin, RayBeam& beam) {
     const D d;
     const std::size_t n = hn::Lanes(d);
     const V big = hn::Set(d, 3e38f);
@@ -100,9 +105,17 @@ class TreeletPacket {
     return true;
   }
 
- private:
   using D = hn::CappedTag<float, size>;
   using V = hn::Vec<D>;
+
+  // The rays that go down axis c.
+  std::uint32_t Negative(std::size_t c) const {
+    const D d;
+    std::uint32_t bits = 0;
+    for (std::size_t i = 0; i < size; i += hn::Lanes(d))
+      bits |= MaskBits(d, hn::Lt(hn::Load(d, lanes.inverse[c] + i), hn::Zero(d))) << i;
+    return bits;
+  }
 
   static hn::Mask<D> LanesOf(std::uint32_t active, std::size_t first) {
     const D d;
@@ -112,199 +125,272 @@ class TreeletPacket {
   }
 };
 
-// First hits of up to 16 rays. A spheres-against-lanes test in double with the operations of sphere.h, in their order,
-// decides: the same bits as sphere_first_hit.
+// The items of a walk: beams, each of the rays of one packet that go down one octant. First hits; double arithmetic
+// decides.
 template <class Positions>
-class TreeletPacketTraversal {
+class TreeletPackets {
  public:
   static constexpr std::size_t size = EnteredRays::size;
+  static constexpr std::size_t most_octants = 8;
 
-  TreeletPacketTraversal(const PkdTree& tree, const Positions& positions, const Treelets& treelets,
-                         const TreeMargin& margin)
-      : tree_(tree), positions_(positions), treelets_(treelets), margin_(margin), leaf_(tree, margin.value) {
-    uniform_ = tree.radius.kind == RadiusView::Kind::uniform;
-  }
+  TreeletPackets(const PkdTree& tree, const Positions& positions, const TreeMargin& margin, std::size_t most_rays)
+      : tree_(tree),
+        positions_(positions),
+        margin_(margin),
+        leaf_(tree, margin.value),
+        shrink_(static_cast<float>(2.0 * margin.value * (1.0 + 1e-3))),
+        packets_(new TreeletPacket[(most_rays + size - 1) / size]),
+        beams_(new RayBeam[most_octants * ((most_rays + size - 1) / size)]) {}
 
-  // rays[0 .. count), all of which fit the margin.
-  void Run(const Ray* rays, FirstHitVisitor* visitors, std::size_t count) {
+  // Packets of rays[0 .. count), all of which fit the margin. A beam of octant o is put down by add(o, beam).
+  template <class AddBeam>
+  void Enter(const Ray* rays, FirstHitVisitor* visitors, std::size_t count, const AddBeam& add) {
     rays_ = rays;
     visitors_ = visitors;
-    double t_limits[size];
-    for (std::size_t i = 0; i < count; ++i) t_limits[i] = visitors[i].t_limit();
-    EnterTree(tree_, margin_, rays, t_limits, count, true, packet_.lanes);
-    std::uint8_t octants[size];
-    for (std::size_t i = 0; i < size; ++i) {
-      std::uint8_t octant = 0;
-      for (int c = 0; c < 3; ++c)
-        if (packet_.lanes.inverse[c][i] < 0.0f) octant = static_cast<std::uint8_t>(octant | 1 << c);
-      octants[i] = octant;
+    std::uint32_t beams = 0;
+    packet_count_ = 0;
+    for (std::size_t first = 0; first < count; first += size) {
+      TreeletPacket& packet = packets_[packet_count_];
+      EnterPacket(packet, first, std::min(size, count - first));
+      std::uint32_t signs[3];
+      for (std::size_t c = 0; c < 3; ++c) signs[c] = packet.Negative(c);
+      for (std::uint32_t left = packet.lanes.inside; left != 0;) {
+        const unsigned lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(left);
+        std::uint32_t active = left;
+        std::uint32_t octant = 0;
+        for (std::uint32_t c = 0; c < 3; ++c) {
+          const bool is_down = (signs[c] >> lane & 1) != 0;
+          active &= is_down ? signs[c] : ~signs[c];
+          octant |= is_down ? 1u << c : 0u;
+        }
+        left &= ~active;
+        RayBeam& beam = beams_[beams];
+        packet.MakeBeam(active, margin_.value, beam);
+        beam.packet = static_cast<std::uint32_t>(packet_count_);
+        beam.active = active;
+        UpdateLatest(beam);
+        add(octant, beams++);
+      }
+      ++packet_count_;
     }
-    for (std::uint32_t left = packet_.lanes.inside; left != 0;) {
-      const std::uint8_t octant = octants[hwy::Num0BitsBelowLS1Bit_Nonzero32(left)];
-      std::uint32_t active = 0;
-      for (std::size_t i = 0; i < size; ++i) active |= octants[i] == octant ? left & 1u << i : 0;
-      left &= ~active;
-      packet_.MakeBeam(active, margin_.value);
-      RunOctant(octant, active);
+  }
+
+  // After the walk: what has been noted is confirmed.
+  void Finish() {
+    for (std::size_t i = 0; i < packet_count_; ++i)
+      for (std::uint32_t left = packets_[i].noted; left != 0; left &= left - 1)
+        ConfirmNoted(packets_[i], hwy::Num0BitsBelowLS1Bit_Nonzero32(left));
+  }
+
+  HWY_INLINE std::uint32_t Meet(const NearFarPlanes& planes, std::uint32_t item, bool is_last) const {
+    const RayBeam& beam = beams_[item];
+    std::uint32_t met = MeetBeam(planes, beam);
+    if (!is_last) return met;
+    // Before a treelet is visited: does any ray of the beam meet it?
+    std::uint32_t met_by_rays = 0;
+    for (; met != 0; met &= met - 1) {
+      const unsigned k = hwy::Num0BitsBelowLS1Bit_Nonzero32(met);
+      met_by_rays |= MeetLanes(planes, k, packets_[beam.packet], beam.active) ? 1u << k : 0u;
+    }
+    return met_by_rays;
+  }
+
+  HWY_INLINE void Prefetch(std::uint64_t begin, std::uint64_t end) const { leaf_.Prefetch(positions_, begin, end); }
+
+  HWY_INLINE void Visit(std::uint64_t begin, std::uint64_t end, const std::uint32_t* list, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      RayBeam& beam = beams_[list[i]];
+      TreeletPacket& packet = packets_[beam.packet];
+      bool changed = false;
+      leaf_.VisitWithinBeam(positions_, begin, end, beam, beam.latest, [&](std::uint64_t place, float radius) HWY_ATTR {
+        changed |= VisitParticle(packet, place, radius, beam.active);
+      });
+      if (changed) UpdateLatest(beam);
     }
   }
 
  private:
   using D = hn::CappedTag<float, size>;
   using V = hn::Vec<D>;
+  static constexpr std::uint64_t most_noted = std::uint64_t{1} << 32;
 
-  struct Entry {
-    TreeletRun run;
-    std::uint64_t node;
-    float t_enter;  // of the beam
-    std::uint32_t active;
-    unsigned level;
-  };
-
-  HWY_INLINE void RunOctant(std::uint32_t octant, std::uint32_t active) {
-    const D d;
-    Entry stack[8 * Treelets::most_levels];
-    std::size_t height = 0;
-    Entry now{treelets_.root(), 0, 0.0f, active, 0};
-    FindLatest(active);
-    for (;;) {
-      if (now.level == treelets_.levels) {
-        VisitTreelet(now.run, now.active);
-      } else {
-        const TreeletNode& node = treelets_.nodes[treelets_.level_begin[now.level] + now.node];
-        NearFarPlanes planes;
-        planes.Decode(node, octant);
-        HWY_ALIGN float t_enter[treelet_fanout];
-        std::uint32_t met = MeetBeam(planes, t_enter);
-        const std::uint32_t flip = treelet_flip(node, octant, treelets_.bits_at(now.level));
-        const unsigned bits = treelets_.bits_at(now.level);
-        // The farthest first, so that the nearest comes off the stack first.
-        while (met != 0) {
-          const unsigned k = farthest_child(met, flip);
-          met &= ~(1u << k);
-          const std::uint32_t child_active = MeetLanes(planes, k) & now.active;
-          if (child_active == 0) continue;
-          stack[height++] = {child_run(now.run, bits, k), (now.node << bits) + k, t_enter[k], child_active,
-                             now.level + 1};
-        }
-      }
-      for (;;) {
-        if (height == 0) return;
-        now = stack[--height];
-        if (now.t_enter <= latest_) break;
-      }
-      (void)d;
+  void EnterPacket(TreeletPacket& packet, std::size_t first, std::size_t count) {
+    double t_limits[size];
+    for (std::size_t i = 0; i < count; ++i) t_limits[i] = visitors_[first + i].t_limit();
+    EnterTree(tree_, margin_, rays_ + first, t_limits, count, true, packet.lanes);
+    packet.first_ray = static_cast<std::uint32_t>(first);
+    packet.noted = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+      // Whether a noted candidate is the excluded item is left to the confirmation.
+      const bool may_note = i < count && rays_[first + i].exclude == no_item && tree_.count <= most_noted;
+      packet.best_earliest[i] =
+          may_note ? packet.lanes.t_high[i] - shrink_ : -std::numeric_limits<float>::infinity();
+      packet.t_certain[i] = packet.lanes.t_low[i] + shrink_;
     }
   }
 
-  // The children that the beam meets, and where.
-  HWY_INLINE std::uint32_t MeetBeam(const NearFarPlanes& planes, float* t_enter) const {
+  HWY_INLINE static std::uint32_t MeetBeam(const NearFarPlanes& planes, const RayBeam& beam) {
     const hn::CappedTag<float, treelet_fanout> d;
     using W = hn::Vec<decltype(d)>;
-    const RayBeam& beam = packet_.beam;
     std::uint32_t met = 0;
     for (std::size_t k = 0; k < treelet_fanout; k += hn::Lanes(d)) {
       W enter = hn::Zero(d);
-      W leave = hn::Set(d, latest_);
+      W leave = hn::Set(d, beam.latest);
       for (std::size_t c = 0; c < 3; ++c) {
         enter = hn::Max(enter, hn::MulAdd(hn::Load(d, planes.near[c] + k), hn::Set(d, beam.near_inverse[c]),
                                           hn::Set(d, beam.near_start[c])));
         leave = hn::Min(leave, hn::MulAdd(hn::Load(d, planes.far[c] + k), hn::Set(d, beam.far_inverse[c]),
                                           hn::Set(d, beam.far_start[c])));
       }
-      hn::Store(enter, d, t_enter + k);
       met |= MaskBits(d, hn::Le(enter, leave)) << k;
     }
     return met;
   }
 
-  // The rays that meet child k.
-  HWY_INLINE std::uint32_t MeetLanes(const NearFarPlanes& planes, unsigned k) const {
+  // Any of the rays `active` meets child k.
+  HWY_INLINE static bool MeetLanes(const NearFarPlanes& planes, unsigned k, const TreeletPacket& packet,
+                                   std::uint32_t active) {
     const D d;
     std::uint32_t met = 0;
     for (std::size_t i = 0; i < size; i += hn::Lanes(d)) {
       V enter = hn::Zero(d);
-      V leave = hn::Load(d, packet_.lanes.t_high + i);
+      V leave = hn::Load(d, packet.lanes.t_high + i);
       for (std::size_t c = 0; c < 3; ++c) {
-        const V inverse = hn::Load(d, packet_.lanes.inverse[c] + i);
-        const V start = hn::Load(d, packet_.start[c] + i);
+        const V inverse = hn::Load(d, packet.lanes.inverse[c] + i);
+        const V start = hn::Load(d, packet.start[c] + i);
         enter = hn::Max(enter, hn::MulAdd(hn::Set(d, planes.near[c][k]), inverse, start));
         leave = hn::Min(leave, hn::MulAdd(hn::Set(d, planes.far[c][k]), inverse, start));
       }
       met |= MaskBits(d, hn::Le(enter, leave)) << i;
     }
-    return met;
+    return (met & active) != 0;
   }
 
   // The farthest distance that any ray still looks at.
-  HWY_INLINE void FindLatest(std::uint32_t active) {
-    float latest = -1.0f;
-    for (; active != 0; active &= active - 1)
-      latest = std::max(latest, packet_.lanes.t_high[hwy::Num0BitsBelowLS1Bit_Nonzero32(active)]);
-    latest_ = latest;
-    octant_active_ = active;
-  }
-  HWY_INLINE void UpdateLatest() {
+  HWY_INLINE void UpdateLatest(RayBeam& beam) const {
+    const TreeletPacket& packet = packets_[beam.packet];
     const D d;
     V latest = hn::Set(d, -1.0f);
-    for (std::size_t i = 0; i < size; i += hn::Lanes(d)) latest = hn::Max(latest, hn::Load(d, packet_.lanes.t_high + i));
-    latest_ = hn::GetLane(hn::MaxOfLanes(d, latest));
+    for (std::size_t i = 0; i < size; i += hn::Lanes(d))
+      latest = hn::Max(latest, hn::IfThenElse(packet.LanesOf(beam.active, i), hn::Load(d, packet.lanes.t_high + i),
+                                              hn::Set(d, -1.0f)));
+    beam.latest = hn::GetLane(hn::MaxOfLanes(d, latest));
   }
 
-  HWY_INLINE void VisitTreelet(const TreeletRun& run, std::uint32_t active) {
-    const std::uint64_t end = std::min(run.begin + run.span, tree_.count);
-    bool changed = false;
-    leaf_.VisitWithinBeam(positions_, run.begin, end, packet_.beam, latest_, [&](std::uint64_t place, float radius2) HWY_ATTR {
-      changed |= VisitParticle(place, radius2, active);
-    });
-    if (changed) UpdateLatest();
-  }
-
-  HWY_INLINE bool VisitParticle(std::uint64_t place, float radius2, std::uint32_t active) {
+  // True: a ray's limit has come nearer.
+  //
+  // In f32 a sphere that is grown by the margin is hit no later, and one that is shrunk by it no earlier, than the
+  // sphere is in truth: the near intersection moves by at least the change of the radius. That bounds the distance of a
+  // hit from both sides. While one candidate of a ray is nearer than all others, bounds and all, it is only noted;
+  // where bounds overlap, double arithmetic decides at once.
+  HWY_INLINE bool VisitParticle(TreeletPacket& packet, std::uint64_t place, float radius, std::uint32_t active) {
     const D d;
+    const hn::RebindToUnsigned<D> u;
     const std::size_t lanes = hn::Lanes(d);
     float centre[3];
     positions_.centre_f32(place, centre);
-    const V r2 = hn::Set(d, radius2);
+    const V r2 = hn::Set(d, radius * radius * (1.0f + 1e-6f));
+    const float inner = std::max(radius - shrink_, 0.0f);
+    const V inner2 = hn::Set(d, inner * inner * (1.0f - 1e-6f));
     const V cx = hn::Set(d, centre[0]);
     const V cy = hn::Set(d, centre[1]);
     const V cz = hn::Set(d, centre[2]);
-    std::uint32_t candidates = 0;
+    bool nearer = false;
     for (std::size_t i = 0; i < size; i += lanes) {
       const auto [b, distance2] = ApproachOf(
-          hn::Sub(cx, hn::Load(d, packet_.lanes.origin[0] + i)), hn::Sub(cy, hn::Load(d, packet_.lanes.origin[1] + i)),
-          hn::Sub(cz, hn::Load(d, packet_.lanes.origin[2] + i)), hn::Load(d, packet_.lanes.direction[0] + i),
-          hn::Load(d, packet_.lanes.direction[1] + i), hn::Load(d, packet_.lanes.direction[2] + i));
+          hn::Sub(cx, hn::Load(d, packet.lanes.origin[0] + i)), hn::Sub(cy, hn::Load(d, packet.lanes.origin[1] + i)),
+          hn::Sub(cz, hn::Load(d, packet.lanes.origin[2] + i)), hn::Load(d, packet.lanes.direction[0] + i),
+          hn::Load(d, packet.lanes.direction[1] + i), hn::Load(d, packet.lanes.direction[2] + i));
       const auto close = hn::Le(distance2, r2);
       if (hn::AllFalse(d, close)) continue;
+      const V t_high = hn::Load(d, packet.lanes.t_high + i);
+      const V t_low = hn::Load(d, packet.lanes.t_low + i);
       const V s = hn::Sqrt(hn::Max(hn::Sub(r2, distance2), hn::Zero(d)));
-      const auto in_time = hn::And(hn::Le(hn::Sub(b, s), hn::Load(d, packet_.lanes.t_high + i)),
-                                   hn::Ge(hn::Add(b, s), hn::Load(d, packet_.lanes.t_low + i)));
-      candidates |= MaskBits(d, hn::And(close, in_time)) << i;
+      const V earliest = hn::Sub(b, s);
+      const auto candidate =
+          hn::And(hn::And(close, packet.LanesOf(active, i)), hn::And(hn::Le(earliest, t_high), hn::Ge(hn::Add(b, s), t_low)));
+      if (hn::AllFalse(d, candidate)) continue;
+      const V latest = hn::Sub(b, hn::Sqrt(hn::Max(hn::Sub(inner2, distance2), hn::Zero(d))));
+      const auto certain = hn::And(hn::And(hn::Le(distance2, inner2), hn::Gt(earliest, hn::Load(d, packet.t_certain + i))),
+                                   hn::Lt(latest, hn::Load(d, packet.best_earliest + i)));
+      const auto wins = hn::And(candidate, certain);
+      hn::BlendedStore(latest, wins, d, packet.lanes.t_high + i);
+      hn::BlendedStore(earliest, wins, d, packet.best_earliest + i);
+      hn::BlendedStore(hn::Set(u, static_cast<std::uint32_t>(place)), hn::RebindMask(u, wins), u, packet.best_place + i);
+      const std::uint32_t noted = MaskBits(d, wins) << i;
+      packet.noted |= noted;
+      nearer = true;
+      for (std::uint32_t open = MaskBits(d, candidate) << i & ~noted; open != 0; open &= open - 1) {
+        const std::size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(open);
+        ConfirmNoted(packet, lane);
+        Confirm(packet, lane, place);
+      }
     }
-    candidates &= active;
-    if (candidates == 0) return false;
-    for (; candidates != 0; candidates &= candidates - 1) {
-      const std::size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(candidates);
-      visitors_[lane].visit(tree_, positions_, place, rays_[lane]);
-      packet_.lanes.t_high[lane] =
-          std::min(packet_.lanes.t_high[lane],
-                   static_cast<float>(visitors_[lane].t_limit() - packet_.lanes.t_shift[lane] + margin_.value));
-    }
-    return true;
+    return nearer;
+  }
+
+  void Confirm(TreeletPacket& packet, std::size_t lane, std::uint64_t place) {
+    const Ray& ray = rays_[packet.first_ray + lane];
+    FirstHitVisitor& visitor = visitors_[packet.first_ray + lane];
+    visitor.visit(tree_, positions_, place, ray);
+    const double t = visitor.t_limit() - packet.lanes.t_shift[lane];
+    packet.lanes.t_high[lane] = std::min(packet.lanes.t_high[lane], static_cast<float>(t + margin_.value));
+    if (ray.exclude == no_item) packet.best_earliest[lane] = static_cast<float>(t - margin_.value);
+  }
+  void ConfirmNoted(TreeletPacket& packet, std::size_t lane) {
+    if ((packet.noted >> lane & 1) == 0) return;
+    packet.noted &= ~(1u << lane);
+    Confirm(packet, lane, packet.best_place[lane]);
   }
 
   const PkdTree& tree_;
   const Positions& positions_;
-  const Treelets& treelets_;
   const TreeMargin& margin_;
   const TreeletLeaf<Positions> leaf_;
+  const float shrink_;  // two margins
   const Ray* rays_ = nullptr;
   FirstHitVisitor* visitors_ = nullptr;
-  TreeletPacket packet_;
-  float latest_ = 0.0f;
-  std::uint32_t octant_active_ = 0;
-  bool uniform_;
+  std::size_t packet_count_ = 0;
+  std::unique_ptr<TreeletPacket[]> packets_;
+  std::unique_ptr<RayBeam[]> beams_;
+};
+
+constexpr std::size_t longest_packet_stream = 1024;
+
+// First hits of coherent rays.
+template <class Positions>
+class TreeletPacketStream {
+ public:
+  TreeletPacketStream(const PkdTree& tree, const Positions& positions, const Treelets& treelets,
+                      const TreeMargin& margin, std::size_t most_rays)
+      : packets_(tree, positions, margin, most_rays), walks_(treelets, tree.count, packets_, 8 * most_rays / 16 + 8) {}
+
+  // rays[0 .. count), at most longest_packet_stream, all of which fit the margin.
+  void Run(const Ray* rays, FirstHitVisitor* visitors, std::size_t count) {
+    std::size_t sizes[8] = {};
+    packets_.Enter(rays, visitors, count, [&](std::uint32_t octant, std::uint32_t beam) {
+      if (octant_of_.size() <= beam) octant_of_.resize(beam + 1);
+      octant_of_[beam] = static_cast<std::uint8_t>(octant);
+      ++sizes[octant];
+      beams_ = beam + 1;
+    });
+    for (std::uint32_t octant = 0; octant < 8; ++octant) {
+      if (sizes[octant] == 0) continue;
+      std::uint32_t* list = walks_.Add(octant, sizes[octant]);
+      for (std::uint32_t i = 0; i < beams_; ++i)
+        if (octant_of_[i] == octant) *list++ = i;
+    }
+    beams_ = 0;
+    walks_.Run();
+    packets_.Finish();
+  }
+
+ private:
+  using Packets = TreeletPackets<Positions>;
+  Packets packets_;
+  TreeletWalks<Packets> walks_;
+  std::vector<std::uint8_t> octant_of_;
+  std::uint32_t beams_ = 0;
 };
 
 }  // namespace insitu::kernels::HWY_NAMESPACE

@@ -16,12 +16,13 @@ template <class Positions>
 void TreeletFirstHitsIn(const PkdTree& tree, const Treelets& treelets, const Ray* rays, Hit* hits, std::size_t count) {
   const Positions positions(tree);
   const TreeMargin margin(tree);
-  TreeletPacketTraversal<Positions> packets(tree, positions, treelets, margin);
-  for (std::size_t begin = 0; begin < count; begin += EnteredRays::size) {
-    const std::size_t n = std::min(EnteredRays::size, count - begin);
-    FirstHitVisitor visitors[EnteredRays::size];
+  const std::size_t longest = std::min(count, longest_packet_stream);
+  TreeletPacketStream<Positions> stream(tree, positions, treelets, margin, longest);
+  FirstHitVisitor visitors[longest_packet_stream];
+  for (std::size_t begin = 0; begin < count; begin += longest) {
+    const std::size_t n = std::min(longest, count - begin);
     for (std::size_t i = 0; i < n; ++i) visitors[i] = FirstHitVisitor(rays[begin + i], hits[begin + i]);
-    packets.Run(rays + begin, visitors, n);
+    stream.Run(rays + begin, visitors, n);
   }
 }
 
@@ -30,12 +31,13 @@ void TreeletAnyHitsIn(const PkdTree& tree, const Treelets& treelets, const Ray* 
                       std::size_t count) {
   const Positions positions(tree);
   const TreeMargin margin(tree);
-  TreeletStreams<Positions, AnyHitVisitor> streams(tree, positions, treelets, margin, std::min(count, longest_treelet_stream));
-  std::vector<AnyHitVisitor> visitors(std::min(count, longest_treelet_stream));
-  for (std::size_t begin = 0; begin < count; begin += longest_treelet_stream) {
-    const std::size_t n = std::min(longest_treelet_stream, count - begin);
+  const std::size_t longest = std::min(count, longest_treelet_stream);
+  TreeletStream<Positions, AnyHitVisitor> stream(tree, positions, treelets, margin, longest);
+  std::vector<AnyHitVisitor> visitors(longest);
+  for (std::size_t begin = 0; begin < count; begin += longest) {
+    const std::size_t n = std::min(longest, count - begin);
     for (std::size_t i = 0; i < n; ++i) visitors[i] = AnyHitVisitor(rays[begin + i]);
-    streams.Run(rays + begin, visitors.data(), n);
+    stream.Run(rays + begin, visitors.data(), n);
     for (std::size_t i = 0; i < n; ++i) occluded[begin + i] |= visitors[i].found ? 1 : 0;
   }
 }
