@@ -7,16 +7,57 @@
 #define INSITU_KERNELS_PKD_ENTER_INL_H_
 #endif
 
+#include <cstddef>
+
 #include "kernels/pkd_leaf-inl.h"
 #include "kernels/pkd_margin.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace insitu::kernels::HWY_NAMESPACE {
 
+// Rays as they are, component by component, as far as ray.h gives them in doubles that follow each other.
+struct RayColumns {
+  static constexpr std::size_t size = 16;
+  HWY_ALIGN double origin[3][size];
+  HWY_ALIGN double direction[3][size];
+  HWY_ALIGN double t_min[size];
+
+  // rays[0 .. count), at most `size`; lanes behind them repeat the first.
+  HWY_INLINE void Load(const Ray* rays, std::size_t count) {
+    static_assert(offsetof(Ray, direction) == 3 * sizeof(double) && offsetof(Ray, t_min) == 6 * sizeof(double));
+    const hn::CappedTag<double, 2> d;
+    if constexpr (hn::MaxLanes(hn::CappedTag<double, 2>()) == 2) {
+      for (std::size_t i = 0; i < size; i += 2) {
+        const double* const a = rays[i < count ? i : 0].origin;
+        const double* const b = rays[i + 1 < count ? i + 1 : 0].origin;
+        const auto xy_a = hn::LoadU(d, a), zu_a = hn::LoadU(d, a + 2), vw_a = hn::LoadU(d, a + 4);
+        const auto xy_b = hn::LoadU(d, b), zu_b = hn::LoadU(d, b + 2), vw_b = hn::LoadU(d, b + 4);
+        hn::Store(hn::InterleaveLower(d, xy_a, xy_b), d, origin[0] + i);
+        hn::Store(hn::InterleaveUpper(d, xy_a, xy_b), d, origin[1] + i);
+        hn::Store(hn::InterleaveLower(d, zu_a, zu_b), d, origin[2] + i);
+        hn::Store(hn::InterleaveUpper(d, zu_a, zu_b), d, direction[0] + i);
+        hn::Store(hn::InterleaveLower(d, vw_a, vw_b), d, direction[1] + i);
+        hn::Store(hn::InterleaveUpper(d, vw_a, vw_b), d, direction[2] + i);
+        t_min[i] = a[6];
+        t_min[i + 1] = b[6];
+      }
+    } else {
+      for (std::size_t i = 0; i < size; ++i) {
+        const Ray& ray = rays[i < count ? i : 0];
+        for (int c = 0; c < 3; ++c) {
+          origin[c][i] = ray.origin[c];
+          direction[c][i] = ray.direction[c];
+        }
+        t_min[i] = ray.t_min;
+      }
+    }
+  }
+};
+
 // Rays where they enter the tree. Lanes of rays that miss it, and lanes without a ray, hold harmless numbers, and an
 // interval that is empty.
 struct EnteredRays {
-  static constexpr std::size_t size = 16;
+  static constexpr std::size_t size = RayColumns::size;
 
   HWY_ALIGN float origin[3][size];  // the point from which distances count
   HWY_ALIGN float direction[3][size];
@@ -31,32 +72,24 @@ struct EnteredRays {
   bool is_inside(std::size_t lane) const { return (inside >> lane & 1) != 0; }
 };
 
-// Takes rays[0 .. count), at most EnteredRays::size, of which nothing behind t_limits counts. Where all of them enter
-// the tree close to each other, as camera rays do, their distances count from the same number, the nearest entry; else
-// each counts from its own. Returns true for the former.
-HWY_INLINE bool EnterTree(const PkdTree& tree, const TreeMargin& margin, const Ray* rays, const double* t_limits,
-                          std::size_t count, bool may_share_shift, EnteredRays& out) {
+// Takes the first `count` rays of `columns`, of which nothing behind t_limits counts. Where all of them enter the tree
+// close to each other, as camera rays do, their distances count from the same number, the nearest entry; else each
+// counts from its own. Returns true for the former.
+HWY_INLINE bool EnterTree(const PkdTree& tree, const TreeMargin& margin, const RayColumns& columns,
+                          const double* t_limits, std::size_t count, bool may_share_shift, EnteredRays& out) {
   constexpr std::size_t size = EnteredRays::size;
   constexpr double parallel = 1e-18;  // slower directions count as this: products stay finite in f32, the signs right
   const hn::CappedTag<double, size> d;
   const hn::Rebind<float, decltype(d)> f;
   using V = hn::Vec<decltype(d)>;
   const std::size_t lanes = hn::Lanes(d);
+  const auto& origin = columns.origin;
+  const auto& direction = columns.direction;
+  const auto& t_min = columns.t_min;
 
-  HWY_ALIGN double origin[3][size];
-  HWY_ALIGN double direction[3][size];
-  HWY_ALIGN double t_min[size];
   HWY_ALIGN double enter[size];
   HWY_ALIGN double leave[size];
-  for (std::size_t i = 0; i < size; ++i) {
-    const Ray& ray = rays[i < count ? i : 0];
-    for (int c = 0; c < 3; ++c) {
-      origin[c][i] = ray.origin[c];
-      direction[c][i] = ray.direction[c];
-    }
-    t_min[i] = ray.t_min;
-    leave[i] = i < count ? t_limits[i] : -std::numeric_limits<double>::infinity();
-  }
+  for (std::size_t i = 0; i < size; ++i) leave[i] = i < count ? t_limits[i] : -std::numeric_limits<double>::infinity();
 
   const double wide = tree.radius_max + margin.value;
   const V zero = hn::Zero(d);
@@ -112,6 +145,13 @@ HWY_INLINE bool EnterTree(const PkdTree& tree, const TreeMargin& margin, const R
     hn::Store(hn::DemoteTo(f, hn::IfThenElse(is_inside, high, hn::Neg(one))), f, out.t_high + i);
   }
   return share_shift;
+}
+
+HWY_INLINE bool EnterTree(const PkdTree& tree, const TreeMargin& margin, const Ray* rays, const double* t_limits,
+                          std::size_t count, bool may_share_shift, EnteredRays& out) {
+  RayColumns columns;
+  columns.Load(rays, count);
+  return EnterTree(tree, margin, columns, t_limits, count, may_share_shift, out);
 }
 
 }  // namespace insitu::kernels::HWY_NAMESPACE

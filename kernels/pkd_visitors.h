@@ -25,13 +25,17 @@ class FirstHitVisitor {
     if (item == ray.exclude) return false;
     double centre[3];
     positions.centre(place, centre);
-    const double t = sphere_first_hit(ray.origin, ray.direction, centre, tree.radius.value(item), ray.t_min);
-    if (!(t <= limit_)) return false;
-    if (t == limit_ && hit_->t == t && !is_preferred(tree, item)) return false;
+    offer(tree, item, sphere_first_hit(ray.origin, ray.direction, centre, tree.radius.value(item), ray.t_min));
+    return false;
+  }
+
+  // `item` is hit at t, as sphere_first_hit has it.
+  void offer(const PkdTree& tree, std::uint64_t item, double t) {
+    if (!(t <= limit_)) return;
+    if (t == limit_ && hit_->t == t && !is_preferred(tree, item)) return;
     limit_ = t;
     *hit_ = {t, item};
     here_ = true;
-    return false;
   }
 
  private:

@@ -37,6 +37,7 @@ class TreeletPacket {
  public:
   static constexpr std::size_t size = EnteredRays::size;
 
+  RayColumns rays;
   EnteredRays lanes;
   HWY_ALIGN float start[3][size];  // - origin / direction
   // Candidates noted in f32, a lane each: earliest and, as lanes.t_high, latest distance; of lanes in `noted`.
@@ -175,11 +176,11 @@ class TreeletPackets {
     }
   }
 
-  // After the walk: what has been noted is confirmed.
+  // After the walk: what has been noted is confirmed, all of a packet together, with the operations of sphere.h in
+  // their order: the same bits as sphere_first_hit.
   void Finish() {
     for (std::size_t i = 0; i < packet_count_; ++i)
-      for (std::uint32_t left = packets_[i].noted; left != 0; left &= left - 1)
-        ConfirmNoted(packets_[i], hwy::Num0BitsBelowLS1Bit_Nonzero32(left));
+      if (packets_[i].noted != 0) ConfirmAllNoted(packets_[i]);
   }
 
   HWY_INLINE std::uint32_t Meet(const NearFarPlanes& planes, std::uint32_t item, bool is_last) const {
@@ -217,7 +218,8 @@ class TreeletPackets {
   void EnterPacket(TreeletPacket& packet, std::size_t first, std::size_t count) {
     double t_limits[size];
     for (std::size_t i = 0; i < count; ++i) t_limits[i] = visitors_[first + i].t_limit();
-    EnterTree(tree_, margin_, rays_ + first, t_limits, count, true, packet.lanes);
+    packet.rays.Load(rays_ + first, count);
+    EnterTree(tree_, margin_, packet.rays, t_limits, count, true, packet.lanes);
     packet.first_ray = static_cast<std::uint32_t>(first);
     packet.noted = 0;
     for (std::size_t i = 0; i < size; ++i) {
@@ -337,6 +339,52 @@ class TreeletPackets {
     packet.lanes.t_high[lane] = std::min(packet.lanes.t_high[lane], static_cast<float>(t + margin_.value));
     if (ray.exclude == no_item) packet.best_earliest[lane] = static_cast<float>(t - margin_.value);
   }
+  HWY_INLINE void ConfirmAllNoted(const TreeletPacket& packet) {
+    const hn::CappedTag<double, size> d;
+    using W = hn::Vec<decltype(d)>;
+    HWY_ALIGN double centre[3][size] = {};
+    HWY_ALIGN double radius[size] = {};
+    HWY_ALIGN double t[size];
+    std::uint64_t items[size];
+    for (std::uint32_t left = packet.noted; left != 0; left &= left - 1) {
+      const std::size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(left);
+      const std::uint64_t place = packet.best_place[lane];
+      double at[3];
+      positions_.centre(place, at);
+      for (std::size_t c = 0; c < 3; ++c) centre[c][lane] = at[c];
+      items[lane] = tree_.item(place);
+      radius[lane] = tree_.radius.value(items[lane]);
+    }
+    for (std::size_t i = 0; i < size; i += hn::Lanes(d)) {
+      const W dx = hn::Load(d, packet.rays.direction[0] + i);
+      const W dy = hn::Load(d, packet.rays.direction[1] + i);
+      const W dz = hn::Load(d, packet.rays.direction[2] + i);
+      const W fx = hn::Sub(hn::Load(d, packet.rays.origin[0] + i), hn::Load(d, centre[0] + i));
+      const W fy = hn::Sub(hn::Load(d, packet.rays.origin[1] + i), hn::Load(d, centre[1] + i));
+      const W fz = hn::Sub(hn::Load(d, packet.rays.origin[2] + i), hn::Load(d, centre[2] + i));
+      const W b = hn::Neg(hn::Add(hn::Add(hn::Mul(fx, dx), hn::Mul(fy, dy)), hn::Mul(fz, dz)));
+      const W px = hn::Add(fx, hn::Mul(b, dx));
+      const W py = hn::Add(fy, hn::Mul(b, dy));
+      const W pz = hn::Add(fz, hn::Mul(b, dz));
+      const W r = hn::Load(d, radius + i);
+      const W discriminant =
+          hn::Sub(hn::Mul(r, r), hn::Add(hn::Add(hn::Mul(px, px), hn::Mul(py, py)), hn::Mul(pz, pz)));
+      const W s = hn::Sqrt(discriminant);
+      const W enter = hn::Sub(b, s);
+      const W leave = hn::Add(b, s);
+      const W t_min = hn::Load(d, packet.rays.t_min + i);
+      const W never = hn::Set(d, std::numeric_limits<double>::infinity());
+      const W later = hn::IfThenElse(hn::Gt(leave, t_min), leave, never);
+      const W first = hn::IfThenElse(hn::Gt(enter, t_min), enter, later);
+      hn::Store(hn::IfThenElse(hn::Ge(discriminant, hn::Zero(d)), first, never), d, t + i);
+    }
+    for (std::uint32_t left = packet.noted; left != 0; left &= left - 1) {
+      const std::size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(left);
+      if (t[lane] != std::numeric_limits<double>::infinity())
+        visitors_[packet.first_ray + lane].offer(tree_, items[lane], t[lane]);
+    }
+  }
+
   void ConfirmNoted(TreeletPacket& packet, std::size_t lane) {
     if ((packet.noted >> lane & 1) == 0) return;
     packet.noted &= ~(1u << lane);
