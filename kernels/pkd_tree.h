@@ -49,7 +49,7 @@ struct PkdTree {
   double upper[3] = {};
   double radius_max = 0.0;
   std::uint64_t built_leaf = pkd_leaf_size;  // the build goes on to leaves of this size; never above pkd_leaf_size
-  RadiusView radius;  // by item
+  RadiusView radius;                         // by item
   PreferItem prefer = nullptr;
   const void* prefer_context = nullptr;
 

@@ -93,9 +93,9 @@ class TreeletLeaf {
                      hn::Set(d, beam.direction[1]), hn::Set(d, beam.direction[2]));
       // The foot of a ray's perpendicular is at most b plus the beam's width there; r more is an ample allowance.
       const V reach = hn::Add(b, r);
-      const V wide = hn::MulAdd(hn::Set(d, beam.growth), hn::Max(hn::Add(reach, r), hn::Zero(d)), hn::Add(r, hn::Set(d, beam.start)));
-      const auto meets = hn::And(hn::Le(distance2, hn::Mul(wide, wide)),
-                                 hn::Le(hn::Sub(b, wide), hn::Set(d, latest)));
+      const V wide = hn::MulAdd(hn::Set(d, beam.growth), hn::Max(hn::Add(reach, r), hn::Zero(d)),
+                                hn::Add(r, hn::Set(d, beam.start)));
+      const auto meets = hn::And(hn::Le(distance2, hn::Mul(wide, wide)), hn::Le(hn::Sub(b, wide), hn::Set(d, latest)));
       std::uint32_t bits = MaskBits(d, meets) & ~std::uint32_t{0} >> (32 - count);
       for (; bits != 0; bits &= bits - 1) {
         const unsigned i = hwy::Num0BitsBelowLS1Bit_Nonzero32(bits);
@@ -111,7 +111,8 @@ class TreeletLeaf {
     if constexpr (std::is_same_v<Positions, PlacedPositions<float>>) {
       // What stands behind the treelet is read along, as far as there is something, and left alone.
       if (HWY_LIKELY(begin + hn::Lanes(d) <= tree_.position.count)) {
-        if (HWY_LIKELY(positions.packed_records())) return hn::LoadInterleaved3(d, positions.scalars(begin, 0), x, y, z);
+        if (HWY_LIKELY(positions.packed_records()))
+          return hn::LoadInterleaved3(d, positions.scalars(begin, 0), x, y, z);
         if (positions.packed_columns()) {
           x = hn::LoadU(d, positions.scalars(begin, 0));
           y = hn::LoadU(d, positions.scalars(begin, 1));

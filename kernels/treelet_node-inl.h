@@ -60,12 +60,12 @@ struct NearFarPlanes {
     const V sz = hn::Set(d, ray.start[2]);
     std::uint32_t met = 0;
     for (std::size_t k = 0; k < treelet_fanout; k += hn::Lanes(d)) {
-      const V enter = hn::Max(hn::Max(hn::MulAdd(hn::Load(d, near[0] + k), ix, sx), hn::Set(d, ray.t_low)),
-                              hn::Max(hn::MulAdd(hn::Load(d, near[1] + k), iy, sy),
-                                      hn::MulAdd(hn::Load(d, near[2] + k), iz, sz)));
-      const V leave = hn::Min(hn::Min(hn::MulAdd(hn::Load(d, far[0] + k), ix, sx), hn::Set(d, ray.t_high)),
-                              hn::Min(hn::MulAdd(hn::Load(d, far[1] + k), iy, sy),
-                                      hn::MulAdd(hn::Load(d, far[2] + k), iz, sz)));
+      const V enter =
+          hn::Max(hn::Max(hn::MulAdd(hn::Load(d, near[0] + k), ix, sx), hn::Set(d, ray.t_low)),
+                  hn::Max(hn::MulAdd(hn::Load(d, near[1] + k), iy, sy), hn::MulAdd(hn::Load(d, near[2] + k), iz, sz)));
+      const V leave =
+          hn::Min(hn::Min(hn::MulAdd(hn::Load(d, far[0] + k), ix, sx), hn::Set(d, ray.t_high)),
+                  hn::Min(hn::MulAdd(hn::Load(d, far[1] + k), iy, sy), hn::MulAdd(hn::Load(d, far[2] + k), iz, sz)));
       met |= MaskBits(d, hn::Le(enter, leave)) << k;
     }
     return met;

@@ -225,8 +225,7 @@ class TreeletPackets {
     for (std::size_t i = 0; i < size; ++i) {
       // Whether a noted candidate is the excluded item is left to the confirmation.
       const bool may_note = i < count && rays_[first + i].exclude == no_item && tree_.count <= most_noted;
-      packet.best_earliest[i] =
-          may_note ? packet.lanes.t_high[i] - shrink_ : -std::numeric_limits<float>::infinity();
+      packet.best_earliest[i] = may_note ? packet.lanes.t_high[i] - shrink_ : -std::numeric_limits<float>::infinity();
       packet.t_certain[i] = packet.lanes.t_low[i] + shrink_;
     }
   }
@@ -309,16 +308,18 @@ class TreeletPackets {
       const V t_low = hn::Load(d, packet.lanes.t_low + i);
       const V s = hn::Sqrt(hn::Max(hn::Sub(r2, distance2), hn::Zero(d)));
       const V earliest = hn::Sub(b, s);
-      const auto candidate =
-          hn::And(hn::And(close, packet.LanesOf(active, i)), hn::And(hn::Le(earliest, t_high), hn::Ge(hn::Add(b, s), t_low)));
+      const auto candidate = hn::And(hn::And(close, packet.LanesOf(active, i)),
+                                     hn::And(hn::Le(earliest, t_high), hn::Ge(hn::Add(b, s), t_low)));
       if (hn::AllFalse(d, candidate)) continue;
       const V latest = hn::Sub(b, hn::Sqrt(hn::Max(hn::Sub(inner2, distance2), hn::Zero(d))));
-      const auto certain = hn::And(hn::And(hn::Le(distance2, inner2), hn::Gt(earliest, hn::Load(d, packet.t_certain + i))),
-                                   hn::Lt(latest, hn::Load(d, packet.best_earliest + i)));
+      const auto certain =
+          hn::And(hn::And(hn::Le(distance2, inner2), hn::Gt(earliest, hn::Load(d, packet.t_certain + i))),
+                  hn::Lt(latest, hn::Load(d, packet.best_earliest + i)));
       const auto wins = hn::And(candidate, certain);
       hn::BlendedStore(latest, wins, d, packet.lanes.t_high + i);
       hn::BlendedStore(earliest, wins, d, packet.best_earliest + i);
-      hn::BlendedStore(hn::Set(u, static_cast<std::uint32_t>(place)), hn::RebindMask(u, wins), u, packet.best_place + i);
+      hn::BlendedStore(hn::Set(u, static_cast<std::uint32_t>(place)), hn::RebindMask(u, wins), u,
+                       packet.best_place + i);
       const std::uint32_t noted = MaskBits(d, wins) << i;
       packet.noted |= noted;
       nearer = true;

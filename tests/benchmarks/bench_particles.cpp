@@ -17,6 +17,7 @@
 #include "geometry/particles/particles.h"
 #include "kernels/pkd_traverse.h"
 #include "measure.h"
+#include "particle_builds.h"
 
 namespace {
 
@@ -31,6 +32,7 @@ using insitu::kernels::Ray;
 
 struct Options {
   bool quick = false;
+  bool builds_only = false;
   std::string json;
   std::vector<std::uint64_t> counts;
   std::vector<std::string> scenes = {"uniform", "clustered"};
@@ -236,50 +238,14 @@ void measure_view(const Options& options, const ParticleScene& scene, const std:
   if (frame_seconds.size() > 1) worst.note("scaling_2_threads", frame_seconds[0] / frame_seconds[1]);
 }
 
-void measure_build(const Options& options, const ParticleScene& scene, insitu::Workers& workers, Worst& worst,
-                   nlohmann::ordered_json& rows) {
-  std::vector<bench::Contender> contenders;
-  std::unique_ptr<OwnParticles> own;
-  const auto add_own = [&](const char* name, ParticleOrder order) {
-    contenders.push_back({name, [&, order] { own = std::make_unique<OwnParticles>(scene, order); },
-                          [&] { workers.run([&] { own->build(); }); }});
-  };
-  std::unique_ptr<EmbreeSpheres> embree;
-  const auto add_embree = [&](EmbreeGeometry geometry, RTCBuildQuality quality) {
-    contenders.push_back({std::string(bench::name_of(geometry)) + " " + bench::name_of(quality),
-                          [&, geometry, quality] {
-                            embree.reset();
-                            embree = std::make_unique<EmbreeSpheres>(scene, geometry, quality);
-                          },
-                          [&] { workers.run([&] { embree->build(); }); }});
-  };
-  add_own("pkd", ParticleOrder::permute);
-  add_embree(EmbreeGeometry::sphere_point, RTC_BUILD_QUALITY_LOW);
-  add_embree(EmbreeGeometry::sphere_point, RTC_BUILD_QUALITY_MEDIUM);
-  if (!options.quick) add_embree(EmbreeGeometry::sphere_point, RTC_BUILD_QUALITY_HIGH);
-  add_own("pkd index", ParticleOrder::index);
-  const std::vector<double> s = bench::take_turns(contenders, options.quick ? 3 : options.repetitions);
-  double fastest = 1e30;
-  std::printf("%-9s %4.0fM build, million particles/s:", scene.name.c_str(), static_cast<double>(scene.count()) / 1e6);
-  nlohmann::ordered_json row = {{"scene", scene.name}, {"particles", scene.count()}};
-  for (std::size_t i = 0; i < contenders.size(); ++i) {
-    if (contenders[i].name.rfind("sphere", 0) == 0) fastest = std::min(fastest, s[i]);
-    std::printf("  %s %.2f", contenders[i].name.c_str(), static_cast<double>(scene.count()) / s[i] / 1e6);
-    row["seconds"][contenders[i].name] = s[i];
-  }
-  std::printf("\n");
-  rows.push_back(row);
-  worst.note("pkd_build_speed_vs_embree_sphere", fastest / s[0]);
-  worst.note("pkd_build_speed_vs_embree_sphere_medium", s[2] / s[0]);
-  worst.note("pkd_index_build_speed_vs_embree_sphere", fastest / s.back());
-  worst.note("pkd_build_million_per_s", static_cast<double>(scene.count()) / s[0] / 1e6);
-}
-
 void measure_scene(const Options& options, const std::string& name, std::uint64_t count,
                    std::vector<insitu::Workers>& teams, Worst& worst, std::map<std::string, double>& most,
                    bench::Report& report) {
   const ParticleScene scene = bench::make_scene(name, count);
-  measure_build(options, scene, teams.back(), worst, report.context()["builds"]);
+  for (const auto& [metric, value] :
+       bench::measure_builds({options.quick, options.repetitions}, scene, teams, report.context()["builds"]))
+    worst.note(metric, value);
+  if (options.builds_only) return;
 
   const auto note_most = [&most](const std::string& metric, double value) {
     most[metric] = std::max(most.emplace(metric, value).first->second, value);
@@ -316,6 +282,7 @@ int main(int argc, char** argv) {
   Options options;
   app.add_flag("--quick", options.quick,
                "1M particles, 704 x 704 pixels, one build quality, 3 repetitions: within 45 s");
+  app.add_flag("--builds-only", options.builds_only, "no frames");
   app.add_option("--json", options.json, "write {context, results} to this file");
   app.add_option("--particles", options.counts, "numbers of particles (default 1000000 and 10000000)");
   app.add_option("--scenes", options.scenes, "uniform, clustered")->capture_default_str();

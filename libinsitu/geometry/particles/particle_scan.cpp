@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/float_environment.h"
+#include "kernels/pkd_partition.h"
 #include "kernels/pkd_positions.h"
 
 namespace insitu {
@@ -29,12 +30,34 @@ ScanResult join(const ScanResult& a, const ScanResult& b) {
   return both;
 }
 
+// Packed records without a radius each, all of them fit to be drawn: by SIMD. False, and nothing done, otherwise.
+template <class Positions>
+bool scan_records(const Positions& positions, std::uint64_t begin, std::uint64_t end, ScanResult& result) {
+  if constexpr (std::is_same_v<Positions, kernels::PlacedPositions<typename Positions::Key>>) {
+    if (!positions.packed_records()) return false;
+    typename Positions::Key lower[3];
+    typename Positions::Key upper[3];
+    if (!kernels::bounds_of_records(positions.scalars(begin, 0), static_cast<std::size_t>(end - begin), lower, upper))
+      return false;
+    ScanResult range = {{}, {}, 0.0, end - begin};
+    for (int c = 0; c < 3; ++c) {
+      range.lower[c] = static_cast<double>(lower[c]);
+      range.upper[c] = static_cast<double>(upper[c]);
+      if (range.lower[c] < -largest_coordinate || range.upper[c] > largest_coordinate) return false;
+    }
+    result = join(result, range);
+    return true;
+  }
+  return false;
+}
+
 template <class Positions>
 ScanResult scan(const kernels::PkdTree& tree, bool judge_radius) {
   const Positions positions(tree);
   const bool each_radius = judge_radius && tree.radius.kind != kernels::RadiusView::Kind::uniform;
   const auto scan_range = [&](const tbb::blocked_range<std::uint64_t>& range, ScanResult result) {
     const FloatEnvironment guard;
+    if (!each_radius && scan_records(positions, range.begin(), range.end(), result)) return result;
     for (std::uint64_t item = range.begin(); item < range.end(); ++item) {
       double centre[3];
       positions.centre(item, centre);

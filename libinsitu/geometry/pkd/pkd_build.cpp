@@ -1,8 +1,11 @@
 #include "geometry/pkd/pkd_build.h"
 
+#include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/parallel_invoke.h>
 
-#include "core/float_environment.h"
+#include <memory>
+
+#include "geometry/pkd/pkd_split.h"
 
 namespace insitu {
 namespace {
@@ -11,87 +14,97 @@ using kernels::PkdBox;
 using kernels::PkdLayout;
 using kernels::PkdTree;
 
-// Particles whose PkdItems fit well into the second level cache of one core.
+// Particles of a block, which is ordered in scratch memory: its items fill the second level cache of one core.
 template <class Key>
-constexpr std::uint64_t block_size = (std::uint64_t{512} << 10) / sizeof(PkdItem<Key>);
+constexpr std::uint64_t block_size = (std::uint64_t{1} << 20) / sizeof(PkdItem<Key>);
 
-template <class Store>
-struct Halves {
-  std::uint64_t mid;
-  PkdBox<typename Store::Key> left;
-  PkdBox<typename Store::Key> right;
+// Memory of one thread: allocated by the first block that it builds, and used for all.
+template <class Key>
+class BlockScratch {
+ public:
+  BlockScratch(std::size_t size, std::size_t bytes_per_item)
+      : items(new PkdItem<Key>[size + kernels::run_padding / 4]),
+        keys(new Key[size + kernels::list_slack]),
+        places(new ListedPlace<Key>[size + kernels::list_slack]),
+        bytes(new std::byte[size * bytes_per_item]) {
+    // What is read behind the last item is not used, but it shall be a number.
+    std::fill_n(items.get() + size, kernels::run_padding / 4, PkdItem<Key>{});
+  }
+  std::unique_ptr<PkdItem<Key>[]> items;
+  std::unique_ptr<Key[]> keys;
+  std::unique_ptr<ListedPlace<Key>[]> places;
+  std::unique_ptr<std::byte[]> bytes;
 };
 
 template <class Store>
-Halves<Store> split(Store& store, std::uint64_t begin, std::uint64_t end, const PkdBox<typename Store::Key>& box) {
-  const int axis = box.split_axis();
-  const std::uint64_t mid = begin + (end - begin) / 2;
-  kernels::select_place(store, begin, end, mid, axis);
-  Halves<Store> halves{mid, box, box};
-  halves.left.upper[axis] = halves.right.lower[axis] = store.key(mid, axis);
-  return halves;
-}
+class PkdBuild {
+ public:
+  using Key = typename Store::Key;
+  using Box = PkdBox<Key>;
 
-// Of particles at one point the one to be shown stands first (kernels/pkd_traverse.cc relies on it).
-template <class Store, class Prefer>
-void put_preferred_first(Store& store, std::uint64_t begin, std::uint64_t end, Prefer prefer) {
-  std::uint64_t best = begin;
-  for (std::uint64_t place = begin + 1; place < end; ++place)
-    if (prefer(place, best)) best = place;
-  store.swap(begin, best);
-}
+  PkdBuild(Store& store, std::uint64_t count, std::uint64_t leaf)
+      : store_(store), leaf_(leaf), scratch_([count] {
+          return BlockScratch<Key>(static_cast<std::size_t>(std::min(count, block_size<Key>)), Store::bytes_per_item());
+        }) {}
 
-// Builds over [begin, end) on the calling thread.
-template <class Store, class Prefer>
-void build_serial(Store& store, std::uint64_t begin, std::uint64_t end, PkdBox<typename Store::Key> box,
-                  std::uint64_t leaf, const Prefer& prefer) {
-  while (end - begin > leaf) {
-    if (box.is_point()) return put_preferred_first(store, begin, end, prefer);
-    const Halves<Store> halves = split(store, begin, end, box);
-    build_serial(store, begin, halves.mid, halves.left, leaf, prefer);
-    begin = halves.mid + 1;
-    box = halves.right;
+  void build(std::uint64_t begin, std::uint64_t end, const Box& box) {
+    const FloatEnvironment guard;
+    if (end - begin <= block_size<Key>) return build_block(begin, end, box);
+    if (box.is_point()) return put_preferred_first(begin, end);
+    const int axis = box.split_axis();
+    const std::uint64_t mid = begin + (end - begin) / 2;
+    Box left = box;
+    Box right = box;
+    left.upper[axis] = right.lower[axis] = split_range(store_, {begin, end}, mid, axis);
+    tbb::parallel_invoke([&] { build(begin, mid, left); }, [&] { build(mid + 1, end, right); });
   }
-}
 
-// Builds a subtree that fits into the cache there, and moves the data once.
-template <class Store>
-void build_block(Store& store, std::uint64_t begin, std::uint64_t end, const PkdBox<typename Store::Key>& box, std::uint64_t leaf) {
-  using Item = PkdItem<typename Store::Key>;
-  const auto n = static_cast<std::size_t>(end - begin);
-  const std::unique_ptr<Item[]> items(new Item[n]);
-  for (std::size_t i = 0; i < n; ++i) {
-    for (int axis = 0; axis < 3; ++axis) items[i].x[axis] = store.key(begin + i, axis);
-    items[i].local = static_cast<std::uint32_t>(i);
+ private:
+  // Orders a subtree in cache, and moves the data once.
+  void build_block(std::uint64_t begin, std::uint64_t end, const Box& box) {
+    const auto n = static_cast<std::size_t>(end - begin);
+    if (n <= leaf_) return;
+    BlockScratch<Key>& scratch = scratch_.local();
+    PkdItem<Key>* items = scratch.items.get();
+    for (std::size_t i = 0; i < n; ++i) {
+      for (int axis = 0; axis < 3; ++axis) items[i].x[axis] = store_.key(begin + i, axis);
+      items[i].local = static_cast<ListedPlace<Key>>(i);
+    }
+    struct Block {
+      const Store& store;
+      std::uint64_t begin;
+    } block{store_, begin};
+    const auto prefer = [](const void* context, std::uint64_t a, std::uint64_t b) {
+      const Block& of = *static_cast<const Block*>(context);
+      return of.store.prefer(of.begin + a, of.begin + b);
+    };
+    kernels::order_items(items, n, box, {scratch.keys.get(), scratch.places.get(), prefer, &block, leaf_});
+    store_.apply(begin, items, n, scratch.bytes.get());
   }
-  kernels::RecordStore<Item> scratch(items.get());
-  build_serial(scratch, 0, n, box, leaf, [&](std::uint64_t a, std::uint64_t b) {
-    return store.prefer(begin + items[a].local, begin + items[b].local);
-  });
-  store.apply(begin, items.get(), n);
-}
 
-template <class Store>
-void build_parallel(Store& store, std::uint64_t begin, std::uint64_t end, const PkdBox<typename Store::Key>& box, std::uint64_t leaf) {
-  const FloatEnvironment guard;
-  if (end - begin <= block_size<typename Store::Key>) return build_block(store, begin, end, box, leaf);
-  if (box.is_point())
-    return put_preferred_first(store, begin, end, [&](std::uint64_t a, std::uint64_t b) { return store.prefer(a, b); });
-  const Halves<Store> halves = split(store, begin, end, box);
-  tbb::parallel_invoke([&] { build_parallel(store, begin, halves.mid, halves.left, leaf); },
-                       [&] { build_parallel(store, halves.mid + 1, end, halves.right, leaf); });
-}
+  // Of particles at one point the one to be shown stands first (kernels/pkd_traverse.cc relies on it).
+  void put_preferred_first(std::uint64_t begin, std::uint64_t end) {
+    std::uint64_t best = begin;
+    for (std::uint64_t place = begin + 1; place < end; ++place)
+      if (store_.prefer(place, best)) best = place;
+    store_.swap(begin, best);
+  }
+
+  Store& store_;
+  const std::uint64_t leaf_;
+  tbb::enumerable_thread_specific<BlockScratch<Key>> scratch_;
+};
 
 template <class Store>
 void build(const PkdTree& tree, Store&& store) {
   if (tree.count <= 1) return;
-  using Key = typename std::remove_reference_t<Store>::Key;
-  PkdBox<Key> box;
+  using Stored = typename std::remove_reference_t<Store>;
+  PkdBox<typename Stored::Key> box;
   for (int axis = 0; axis < 3; ++axis) {
-    box.lower[axis] = static_cast<Key>(tree.lower[axis]);
-    box.upper[axis] = static_cast<Key>(tree.upper[axis]);
+    box.lower[axis] = static_cast<typename Stored::Key>(tree.lower[axis]);
+    box.upper[axis] = static_cast<typename Stored::Key>(tree.upper[axis]);
   }
-  build_parallel(store, 0, tree.count, box, tree.built_leaf);
+  PkdBuild<Stored>(store, tree.count, tree.built_leaf).build(0, tree.count, box);
 }
 
 // Only packed coordinates, and nothing that would have to move along.

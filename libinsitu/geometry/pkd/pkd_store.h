@@ -1,34 +1,50 @@
-// What the build of a P-k-d tree moves: an index, packed coordinates, or any number of arrays together. The interface
-// is the Store of kernels/pkd_select.h, and
-//   bool prefer(a, b)              the particle at place a is to be shown rather than the coincident one at b
-//   void apply(begin, items, n)    the particle now at begin + i is the one that was at begin + items[i].local
+// What the build of a P-k-d tree moves: an index, packed coordinates, or any number of arrays together.
+//
+// Beside what kernels/pkd_exchange.h asks of a Store:
+//   KeyRun<Key> keys(begin, count, axis, buffer)   coordinates of places, where they are or in `buffer`; count <=
+//                                                  most_keys
+//   void swap(a, b)
+//   bool prefer(a, b)                  the particle at place a is to be shown rather than the coincident one at b
+//   void apply(begin, items, n, bytes) the particle now at begin + i is the one that was at begin + items[i].local;
+//                                      `bytes` is memory for n times bytes_per_item
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <utility>
 #include <vector>
 
+#include "kernels/pkd_exchange.h"
+#include "kernels/pkd_partition.h"
 #include "kernels/pkd_positions.h"
-#include "kernels/pkd_select.h"
-#include "kernels/pkd_tree.h"
 
 namespace insitu {
 
-// A particle in the scratch memory of the build: small subtrees are built there, in cache, and applied in one go.
-template <class K>
-struct PkdItem {
-  K x[3];
-  std::uint32_t local;  // place within the block
-};
+using kernels::KeyRun;
+using kernels::ListedPlace;
+using kernels::PkdItem;
 
-// Coordinates alone, packed as x y z x y z ...
-template <class K>
-struct PkdRecord {
-  K x[3];
-};
+constexpr std::size_t most_keys = 1024;
 
 inline bool prefer_item(const kernels::PkdTree& tree, std::uint64_t a, std::uint64_t b) {
   return tree.prefer != nullptr ? tree.prefer(tree.prefer_context, a, b) : a < b;
+}
+
+// Reads coordinates one by one into a buffer, which has run_padding scalars more than it gets.
+template <class Positions>
+KeyRun<typename Positions::Key> gather_keys(const Positions& positions, std::uint64_t begin, std::size_t count,
+                                            int axis, typename Positions::Key* buffer) {
+  for (std::size_t i = 0; i < count; ++i) buffer[i] = positions.key(begin + i, axis);
+  return {buffer, 1, true};
+}
+
+template <class Store>
+std::size_t list_in_store(const Store& store, std::uint64_t begin, std::size_t count, int axis,
+                          kernels::Relation relation, typename Store::Key pivot,
+                          ListedPlace<typename Store::Key>* places) {
+  typename Store::Key buffer[kernels::exchange_block + kernels::run_padding];
+  return kernels::list_places(store.keys(begin, count, axis, buffer), count, relation, pivot, places);
 }
 
 // Nothing moves but the index.
@@ -36,26 +52,30 @@ template <class Positions, class Index>
 class IndexStore {
  public:
   using Key = typename Positions::Key;
+  using Place = ListedPlace<Key>;
 
   IndexStore(const kernels::PkdTree& tree, Index* index) : tree_(tree), positions_(tree), index_(index) {}
 
+  static constexpr std::size_t bytes_per_item() { return sizeof(Index); }
+  KeyRun<Key> keys(std::uint64_t begin, std::size_t count, int axis, Key* buffer) const {
+    return gather_keys(positions_, begin, count, axis, buffer);
+  }
   Key key(std::uint64_t place, int axis) const { return positions_.key(place, axis); }
+  std::size_t list(std::uint64_t begin, std::size_t count, int axis, kernels::Relation relation, Key pivot,
+                   Place* places) const {
+    return list_in_store(*this, begin, count, axis, relation, pivot, places);
+  }
+  void exchange(std::uint64_t left, const Place* left_places, std::uint64_t right, const Place* right_places,
+                std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) std::swap(index_[left + left_places[i]], index_[right + right_places[i]]);
+  }
   void swap(std::uint64_t a, std::uint64_t b) { std::swap(index_[a], index_[b]); }
   bool prefer(std::uint64_t a, std::uint64_t b) const { return prefer_item(tree_, index_[a], index_[b]); }
 
-  template <class Below>
-  std::uint64_t partition(std::uint64_t begin, std::uint64_t end, int axis, Key pivot, Below below) {
-    std::uint64_t next = begin;
-    for (std::uint64_t i = begin; i < end; ++i) {
-      const bool is_below = below(positions_.key(i, axis), pivot);
-      std::swap(index_[i], index_[next]);
-      next += is_below ? 1 : 0;
-    }
-    return next;
-  }
-  void apply(std::uint64_t begin, const PkdItem<Key>* items, std::size_t n) {
-    const std::vector<Index> before(index_ + begin, index_ + begin + n);
-    for (std::size_t i = 0; i < n; ++i) index_[begin + i] = before[items[i].local];
+  void apply(std::uint64_t begin, const PkdItem<Key>* items, std::size_t n, std::byte* bytes) {
+    std::memcpy(bytes, index_ + begin, n * sizeof(Index));
+    for (std::size_t i = 0; i < n; ++i)
+      std::memcpy(index_ + begin + i, bytes + items[i].local * sizeof(Index), sizeof(Index));
   }
 
  private:
@@ -64,17 +84,39 @@ class IndexStore {
   Index* index_;
 };
 
+// Coordinates alone, packed as x y z x y z ...
+template <class K>
+struct PkdRecord {
+  K x[3];
+};
+
 // Packed coordinates that no other array belongs to.
 template <class K>
-class PackedStore : public kernels::RecordStore<PkdRecord<K>> {
+class PackedStore {
  public:
   using Key = K;
+  using Place = ListedPlace<Key>;
 
-  PackedStore(const kernels::PkdTree& tree, PkdRecord<K>* records)
-      : kernels::RecordStore<PkdRecord<K>>(records), tree_(tree), records_(records) {}
+  PackedStore(const kernels::PkdTree& tree, PkdRecord<K>* records) : tree_(tree), records_(records) {}
 
+  static constexpr std::size_t bytes_per_item() { return 0; }
+  KeyRun<Key> keys(std::uint64_t begin, std::size_t, int axis, Key*) const {
+    return {records_[begin].x + axis, 3, false};
+  }
+  Key key(std::uint64_t place, int axis) const { return records_[place].x[axis]; }
+  std::size_t list(std::uint64_t begin, std::size_t count, int axis, kernels::Relation relation, Key pivot,
+                   Place* places) const {
+    return kernels::list_places(keys(begin, count, axis, nullptr), count, relation, pivot, places);
+  }
+  void exchange(std::uint64_t left, const Place* left_places, std::uint64_t right, const Place* right_places,
+                std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i)
+      std::swap(records_[left + left_places[i]], records_[right + right_places[i]]);
+  }
+  void swap(std::uint64_t a, std::uint64_t b) { std::swap(records_[a], records_[b]); }
   bool prefer(std::uint64_t a, std::uint64_t b) const { return prefer_item(tree_, a, b); }
-  void apply(std::uint64_t begin, const PkdItem<K>* items, std::size_t n) {
+
+  void apply(std::uint64_t begin, const PkdItem<K>* items, std::size_t n, std::byte*) {
     for (std::size_t i = 0; i < n; ++i) std::memcpy(records_ + begin + i, items[i].x, sizeof items[i].x);
   }
 
@@ -96,53 +138,91 @@ struct MovedColumn {
   }
 };
 
+// Calls body(std::integral_constant) for the sizes that are common, so that copies become a few instructions; 0
+// otherwise.
+template <class Body>
+void for_size(std::size_t bytes, const Body& body) {
+  switch (bytes) {
+    case 4:
+      return body(std::integral_constant<std::size_t, 4>());
+    case 8:
+      return body(std::integral_constant<std::size_t, 8>());
+    case 12:
+      return body(std::integral_constant<std::size_t, 12>());
+    case 24:
+      return body(std::integral_constant<std::size_t, 24>());
+    default:
+      return body(std::integral_constant<std::size_t, 0>());
+  }
+}
+
 // All arrays of a set of particles, moved together, record by record, as bytes.
 template <class Positions>
 class ColumnsStore {
  public:
   using Key = typename Positions::Key;
+  using Place = ListedPlace<Key>;
 
   ColumnsStore(const kernels::PkdTree& tree, const std::vector<MovedColumn>& columns)
       : tree_(tree), positions_(tree), columns_(columns) {}
 
+  // Longer records are moved part by part.
+  static constexpr std::size_t bytes_per_item() { return 64; }
+  KeyRun<Key> keys(std::uint64_t begin, std::size_t count, int axis, Key* buffer) const {
+    if constexpr (std::is_same_v<Positions, kernels::PlacedPositions<Key>>) {
+      if (positions_.packed_records()) return {positions_.scalars(begin, axis), 3, false};
+      if (positions_.packed_columns()) return {positions_.scalars(begin, axis), 1, false};
+    }
+    return gather_keys(positions_, begin, count, axis, buffer);
+  }
   Key key(std::uint64_t place, int axis) const { return positions_.key(place, axis); }
-  bool prefer(std::uint64_t a, std::uint64_t b) const { return prefer_item(tree_, tree_.item(a), tree_.item(b)); }
-
+  std::size_t list(std::uint64_t begin, std::size_t count, int axis, kernels::Relation relation, Key pivot,
+                   Place* places) const {
+    return list_in_store(*this, begin, count, axis, relation, pivot, places);
+  }
+  void exchange(std::uint64_t left, const Place* left_places, std::uint64_t right, const Place* right_places,
+                std::size_t count) {
+    for (const MovedColumn& column : columns_)
+      for_size(column.bytes, [&](auto size) {
+        for (std::size_t i = 0; i < count; ++i)
+          swap_bytes<size>(column.at(left + left_places[i]), column.at(right + right_places[i]), column.bytes);
+      });
+  }
   void swap(std::uint64_t a, std::uint64_t b) {
     if (a == b) return;
-    for (const MovedColumn& column : columns_) swap_bytes(column.at(a), column.at(b), column.bytes);
+    for (const MovedColumn& column : columns_) swap_bytes<0>(column.at(a), column.at(b), column.bytes);
   }
+  bool prefer(std::uint64_t a, std::uint64_t b) const { return prefer_item(tree_, tree_.item(a), tree_.item(b)); }
 
-  // Hoare's: records may be long, so only those on the wrong side move.
-  template <class Below>
-  std::uint64_t partition(std::uint64_t begin, std::uint64_t end, int axis, Key pivot, Below below) {
-    for (;;) {
-      while (begin < end && below(positions_.key(begin, axis), pivot)) ++begin;
-      while (begin < end && !below(positions_.key(end - 1, axis), pivot)) --end;
-      if (begin == end) return begin;
-      swap(begin, end - 1);
-    }
-  }
-
-  void apply(std::uint64_t begin, const PkdItem<Key>* items, std::size_t n) {
-    std::size_t longest = 0;
-    for (const MovedColumn& column : columns_) longest = std::max(longest, column.bytes);
-    std::vector<std::byte> before(longest * n);
+  void apply(std::uint64_t begin, const PkdItem<Key>* items, std::size_t n, std::byte* bytes) {
     for (const MovedColumn& column : columns_) {
-      for (std::size_t i = 0; i < n; ++i) std::memcpy(&before[i * column.bytes], column.at(begin + i), column.bytes);
-      for (std::size_t i = 0; i < n; ++i)
-        std::memcpy(column.at(begin + i), &before[items[i].local * column.bytes], column.bytes);
+      for (std::size_t done = 0; done < column.bytes; done += bytes_per_item()) {
+        const std::size_t part = std::min(bytes_per_item(), column.bytes - done);
+        for_size(part, [&](auto size) {
+          const std::size_t length = size == 0 ? part : size;
+          for (std::size_t i = 0; i < n; ++i) std::memcpy(bytes + i * length, column.at(begin + i) + done, length);
+          for (std::size_t i = 0; i < n; ++i)
+            if (items[i].local != i) std::memcpy(column.at(begin + i) + done, bytes + items[i].local * length, length);
+        });
+      }
     }
   }
 
  private:
+  template <std::size_t size>
   static void swap_bytes(std::byte* a, std::byte* b, std::size_t bytes) {
     std::byte buffer[64];
-    for (std::size_t done = 0; done < bytes; done += sizeof buffer) {
-      const std::size_t part = std::min(sizeof buffer, bytes - done);
-      std::memcpy(buffer, a + done, part);
-      std::memcpy(a + done, b + done, part);
-      std::memcpy(b + done, buffer, part);
+    if constexpr (size != 0) {
+      std::memcpy(buffer, a, size);
+      std::memcpy(a, b, size);
+      std::memcpy(b, buffer, size);
+    } else {
+      for (std::size_t done = 0; done < bytes; done += sizeof buffer) {
+        const std::size_t part = std::min(sizeof buffer, bytes - done);
+        std::memcpy(buffer, a + done, part);
+        std::memcpy(a + done, b + done, part);
+        std::memcpy(b + done, buffer, part);
+      }
     }
   }
 

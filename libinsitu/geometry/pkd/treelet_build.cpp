@@ -130,8 +130,10 @@ Box encode(const Box* children, unsigned bits, TreeletNode& node) {
     const double step = std::ldexp(1.0, exponent);
     for (unsigned k = 0; k < 1u << bits; ++k) {
       if (children[k].is_empty()) continue;
-      node.lower[c][k] = static_cast<std::uint8_t>(std::clamp(std::floor((children[k].lower[c] - from) / step), 0.0, 255.0));
-      node.upper[c][k] = static_cast<std::uint8_t>(std::clamp(std::ceil((children[k].upper[c] - from) / step), 0.0, 255.0));
+      node.lower[c][k] =
+          static_cast<std::uint8_t>(std::clamp(std::floor((children[k].lower[c] - from) / step), 0.0, 255.0));
+      node.upper[c][k] =
+          static_cast<std::uint8_t>(std::clamp(std::ceil((children[k].upper[c] - from) / step), 0.0, 255.0));
     }
   }
   return around;
@@ -153,7 +155,8 @@ void build(const PkdTree& tree, const Treelets& shape, TreeletNode* nodes) {
     const TreeletRun run = run_of_node(shape, last, index);
     const unsigned bits = shape.bits_at(last);
     Box children[treelet_fanout];
-    for (unsigned k = 0; k < 1u << bits; ++k) children[k] = box_of_run(tree, positions, child_run(run, bits, k), margin);
+    for (unsigned k = 0; k < 1u << bits; ++k)
+      children[k] = box_of_run(tree, positions, child_run(run, bits, k), margin);
     boxes[index] = encode(children, bits, nodes[shape.level_begin[last] + index]);
   });
   for (unsigned level = last; level-- > 0;) {

@@ -71,7 +71,7 @@ TEST_P(EveryLayout, KeepsTheRulesAboveABlock) {
   std::uint64_t seed = 500;
   for (const Order order : all_orders) {
     TreeCase c;
-    c.count = 40000;
+    c.count = 140000;
     c.layout = GetParam();
     c.order = order;
     c.shape = all_shapes[seed % all_shapes.size()];

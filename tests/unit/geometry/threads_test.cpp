@@ -13,8 +13,8 @@
 namespace insitu::testing {
 namespace {
 
-// Above two blocks of the build for f64, so that several threads take part.
-constexpr std::uint64_t count = 70000;
+// Above two blocks of the build, and two chunks of its exchange, so that several threads take part.
+constexpr std::uint64_t count = 150000;
 
 std::vector<std::uint64_t> order_of(const TreeCase& c, unsigned threads) {
   Workers workers(threads);
