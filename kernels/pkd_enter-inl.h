@@ -25,32 +25,33 @@ struct RayColumns {
   // rays[0 .. count), at most `size`; lanes behind them repeat the first.
   HWY_INLINE void Load(const Ray* rays, std::size_t count) {
     static_assert(offsetof(Ray, direction) == 3 * sizeof(double) && offsetof(Ray, t_min) == 6 * sizeof(double));
-    const hn::CappedTag<double, 2> d;
-    if constexpr (hn::MaxLanes(hn::CappedTag<double, 2>()) == 2) {
-      for (std::size_t i = 0; i < size; i += 2) {
-        const double* const a = rays[i < count ? i : 0].origin;
-        const double* const b = rays[i + 1 < count ? i + 1 : 0].origin;
-        const auto xy_a = hn::LoadU(d, a), zu_a = hn::LoadU(d, a + 2), vw_a = hn::LoadU(d, a + 4);
-        const auto xy_b = hn::LoadU(d, b), zu_b = hn::LoadU(d, b + 2), vw_b = hn::LoadU(d, b + 4);
-        hn::Store(hn::InterleaveLower(d, xy_a, xy_b), d, origin[0] + i);
-        hn::Store(hn::InterleaveUpper(d, xy_a, xy_b), d, origin[1] + i);
-        hn::Store(hn::InterleaveLower(d, zu_a, zu_b), d, origin[2] + i);
-        hn::Store(hn::InterleaveUpper(d, zu_a, zu_b), d, direction[0] + i);
-        hn::Store(hn::InterleaveLower(d, vw_a, vw_b), d, direction[1] + i);
-        hn::Store(hn::InterleaveUpper(d, vw_a, vw_b), d, direction[2] + i);
-        t_min[i] = a[6];
-        t_min[i + 1] = b[6];
+#if HWY_TARGET == HWY_SCALAR
+    for (std::size_t i = 0; i < size; ++i) {
+      const Ray& ray = rays[i < count ? i : 0];
+      for (int c = 0; c < 3; ++c) {
+        origin[c][i] = ray.origin[c];
+        direction[c][i] = ray.direction[c];
       }
-    } else {
-      for (std::size_t i = 0; i < size; ++i) {
-        const Ray& ray = rays[i < count ? i : 0];
-        for (int c = 0; c < 3; ++c) {
-          origin[c][i] = ray.origin[c];
-          direction[c][i] = ray.direction[c];
-        }
-        t_min[i] = ray.t_min;
-      }
+      t_min[i] = ray.t_min;
     }
+#else
+    // Two rays at a time, by hand: left alone, compilers gather, which takes several times as long.
+    const hn::CappedTag<double, 2> d;
+    for (std::size_t i = 0; i < size; i += 2) {
+      const auto* const a = reinterpret_cast<const double*>(&rays[i < count ? i : 0]);
+      const auto* const b = reinterpret_cast<const double*>(&rays[i + 1 < count ? i + 1 : 0]);
+      const auto xy_a = hn::LoadU(d, a), zu_a = hn::LoadU(d, a + 2), vw_a = hn::LoadU(d, a + 4);
+      const auto xy_b = hn::LoadU(d, b), zu_b = hn::LoadU(d, b + 2), vw_b = hn::LoadU(d, b + 4);
+      hn::Store(hn::InterleaveLower(d, xy_a, xy_b), d, origin[0] + i);
+      hn::Store(hn::InterleaveUpper(d, xy_a, xy_b), d, origin[1] + i);
+      hn::Store(hn::InterleaveLower(d, zu_a, zu_b), d, origin[2] + i);
+      hn::Store(hn::InterleaveUpper(d, zu_a, zu_b), d, direction[0] + i);
+      hn::Store(hn::InterleaveLower(d, vw_a, vw_b), d, direction[1] + i);
+      hn::Store(hn::InterleaveUpper(d, vw_a, vw_b), d, direction[2] + i);
+      t_min[i] = a[6];
+      t_min[i + 1] = b[6];
+    }
+#endif
   }
 };
 

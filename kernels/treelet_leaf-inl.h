@@ -91,14 +91,14 @@ class TreeletLeaf {
           ApproachOf(hn::Sub(x, hn::Set(d, beam.origin[0])), hn::Sub(y, hn::Set(d, beam.origin[1])),
                      hn::Sub(z, hn::Set(d, beam.origin[2])), hn::Set(d, beam.direction[0]),
                      hn::Set(d, beam.direction[1]), hn::Set(d, beam.direction[2]));
-      // The foot of a ray's perpendicular is at most b plus the beam's width there; r more is an ample allowance.
-      const V reach = hn::Add(b, r);
-      const V wide = hn::MulAdd(hn::Set(d, beam.growth), hn::Max(hn::Add(reach, r), hn::Zero(d)),
-                                hn::Add(r, hn::Set(d, beam.start)));
-      const auto meets = hn::And(hn::Le(distance2, hn::Mul(wide, wide)), hn::Le(hn::Sub(b, wide), hn::Set(d, latest)));
+      const V wide = hn::Add(r, hn::Set(d, beam.start));
+      const V t = hn::Mul(hn::Max(hn::Add(b, wide), hn::Zero(d)), hn::Set(d, beam.stretch));
+      const V reach = hn::MulAdd(hn::Set(d, beam.growth), t, wide);
+      const auto meets =
+          hn::And(hn::Le(distance2, hn::Mul(reach, reach)), hn::Le(hn::Sub(b, reach), hn::Set(d, latest)));
       std::uint32_t bits = MaskBits(d, meets) & ~std::uint32_t{0} >> (32 - count);
       for (; bits != 0; bits &= bits - 1) {
-        const unsigned i = hwy::Num0BitsBelowLS1Bit_Nonzero32(bits);
+        const auto i = static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(bits));
         visit(begin + i, uniform_ ? radius_ : radii[i]);
       }
     }

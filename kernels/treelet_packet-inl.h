@@ -18,7 +18,8 @@ namespace insitu::kernels::HWY_NAMESPACE {
 //   - as an interval of rays: a box that no ray of the interval meets is met by none of the packet (Reshetov, Soupikov,
 //     Hurley, "Multi-level ray tracing algorithm", SIGGRAPH 2005). For t >= 0 near planes are met no earlier than by
 //     the origin nearest to them with the smallest slowness, far planes left no later than by the opposite.
-//   - as a cone: at distance t all rays stay within start + growth t of the axis.
+//   - as a cone: the point of a ray at distance t is within start + growth t of the axis' own point at t. Of a particle
+//     of radius r at b along the axis, a ray is within r at a t of at most (b + r + start) / (1 - growth).
 struct RayBeam {
   float near_start[3];
   float near_inverse[3];
@@ -28,7 +29,8 @@ struct RayBeam {
   float direction[3];
   float start;
   float growth;
-  float latest;  // the farthest distance that any of its rays still looks at
+  float stretch;  // 1 / (1 - growth)
+  float latest;   // the farthest distance that any of its rays still looks at
   std::uint32_t packet;
   std::uint32_t active;  // its rays
 };
@@ -47,8 +49,8 @@ class TreeletPacket {
   std::uint32_t noted;
   std::uint32_t first_ray;
 
-  // False: the rays of `active` go too different ways for a beam.
-  bool MakeBeam(std::uint32_t active, double margin, RayBeam& beam) {
+  // Of the rays of `active`, all of one octant.
+  void MakeBeam(std::uint32_t active, double margin, RayBeam& beam) {
     const D d;
     const std::size_t n = hn::Lanes(d);
     const V big = hn::Set(d, 3e38f);
@@ -84,7 +86,6 @@ class TreeletPacket {
       squared_length += beam.direction[c] * beam.direction[c];
     }
     const float length = std::sqrt(squared_length);
-    if (!(length > 0.9f * rays)) return false;
     for (float& component : beam.direction) component /= length;
     // Whatever the axis is, the bounds are measured from it. The factors cover the rounding of the measurement.
     V offsets = hn::Zero(d);
@@ -103,7 +104,13 @@ class TreeletPacket {
     }
     beam.start = std::sqrt(hn::GetLane(hn::MaxOfLanes(d, offsets))) * (1.0f + 1e-5f) + static_cast<float>(margin);
     beam.growth = std::sqrt(hn::GetLane(hn::MaxOfLanes(d, slopes))) * (1.0f + 1e-5f);
-    return true;
+    beam.stretch = 1.0f / (1.0f - beam.growth);
+    if (beam.growth > 0.5f) {
+      // Rays that go very different ways: everything is within their cone.
+      beam.start = 1e18f;
+      beam.growth = 0.0f;
+      beam.stretch = 1.0f;
+    }
   }
 
   using D = hn::CappedTag<float, size>;
@@ -156,7 +163,7 @@ class TreeletPackets {
       std::uint32_t signs[3];
       for (std::size_t c = 0; c < 3; ++c) signs[c] = packet.Negative(c);
       for (std::uint32_t left = packet.lanes.inside; left != 0;) {
-        const unsigned lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(left);
+        const auto lane = static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(left));
         std::uint32_t active = left;
         std::uint32_t octant = 0;
         for (std::uint32_t c = 0; c < 3; ++c) {
@@ -190,7 +197,7 @@ class TreeletPackets {
     // Before a treelet is visited: does any ray of the beam meet it?
     std::uint32_t met_by_rays = 0;
     for (; met != 0; met &= met - 1) {
-      const unsigned k = hwy::Num0BitsBelowLS1Bit_Nonzero32(met);
+      const auto k = static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(met));
       met_by_rays |= MeetLanes(planes, k, packets_[beam.packet], beam.active) ? 1u << k : 0u;
     }
     return met_by_rays;

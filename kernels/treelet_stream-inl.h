@@ -21,10 +21,9 @@ namespace insitu::kernels::HWY_NAMESPACE {
 constexpr std::size_t longest_treelet_stream = 4096;
 
 // The items of a walk: single rays.
-template <class Positions, class Visitor>
+template <class Positions>
 class TreeletRays {
  public:
-  static constexpr bool is_first = std::is_same_v<Visitor, FirstHitVisitor>;
   static constexpr std::uint8_t no_octant = 8;
 
   TreeletRays(const PkdTree& tree, const Positions& positions, const TreeMargin& margin, std::size_t most_rays)
@@ -32,13 +31,12 @@ class TreeletRays {
         positions_(positions),
         margin_(margin),
         leaf_(tree, margin.value),
-        rays_(new TreeletRay[most_rays]),
-        t_shift_(new double[most_rays]) {}
+        rays_(new TreeletRay[most_rays]) {}
 
-  // rays[0 .. count), for their visitors; octants[i] is no_octant when there is nothing left to trace.
-  void Enter(const Ray* rays, Visitor* visitors, std::size_t count, std::uint8_t* octants) {
+  // rays[0 .. count) that are not occluded yet; octants[i] is no_octant when there is nothing left to trace.
+  void Enter(const Ray* rays, std::uint8_t* occluded, std::size_t count, std::uint8_t* octants) {
     source_ = rays;
-    visitors_ = visitors;
+    occluded_ = occluded;
     for (std::size_t i = 0; i < count; i += EnteredRays::size)
       EnterSome(i, std::min(count - i, EnteredRays::size), octants + i);
   }
@@ -58,10 +56,13 @@ class TreeletRays {
   void EnterSome(std::size_t first, std::size_t count, std::uint8_t* octants) {
     double t_limits[EnteredRays::size];
     for (std::size_t i = 0; i < count; ++i) {
-      Visitor& visitor = visitors_[first + i];
-      t_limits[i] = visitor.t_limit();
-      if (HWY_UNLIKELY(!margin_.Fits(source_[first + i]))) {
-        TraverseTree(tree_, positions_, source_[first + i], visitor);
+      const Ray& ray = source_[first + i];
+      const bool is_left = occluded_[first + i] == 0;
+      t_limits[i] = is_left ? ray.t_max : -std::numeric_limits<double>::infinity();
+      if (is_left && HWY_UNLIKELY(!margin_.Fits(ray))) {
+        AnyHitVisitor visitor(ray);
+        TraverseTree(tree_, positions_, ray, visitor);
+        occluded_[first + i] = visitor.found ? 1 : 0;
         t_limits[i] = -std::numeric_limits<double>::infinity();
       }
     }
@@ -79,23 +80,19 @@ class TreeletRays {
       }
       ray.t_low = entered.t_low[i];
       ray.t_high = entered.t_high[i];
-      t_shift_[first + i] = entered.t_shift[i];
       octants[i] = entered.is_inside(i) ? static_cast<std::uint8_t>(octant) : no_octant;
     }
   }
 
-  // True: the ray needs no more.
+  // True: the ray is occluded.
   HWY_NOINLINE bool Confirm(std::uint32_t number, std::uint64_t place) {
     TreeletRay& ray = rays_[number];
-    Visitor& visitor = visitors_[number];
     if (ray.t_high == -std::numeric_limits<float>::infinity()) return true;
-    if (visitor.visit(tree_, positions_, place, source_[number])) {
-      ray.t_high = -std::numeric_limits<float>::infinity();
-      return true;
-    }
-    if constexpr (is_first)
-      ray.t_high = std::min(ray.t_high, static_cast<float>(visitor.t_limit() - t_shift_[number] + margin_.value));
-    return false;
+    AnyHitVisitor visitor(source_[number]);
+    if (!visitor.visit(tree_, positions_, place, source_[number])) return false;
+    occluded_[number] = 1;
+    ray.t_high = -std::numeric_limits<float>::infinity();
+    return true;
   }
 
   const PkdTree& tree_;
@@ -103,23 +100,22 @@ class TreeletRays {
   const TreeMargin& margin_;
   const TreeletLeaf<Positions> leaf_;
   const Ray* source_ = nullptr;
-  Visitor* visitors_ = nullptr;
+  std::uint8_t* occluded_ = nullptr;
   std::unique_ptr<TreeletRay[]> rays_;
-  std::unique_ptr<double[]> t_shift_;
 };
 
-template <class Positions, class Visitor>
+template <class Positions>
 class TreeletStream {
  public:
   TreeletStream(const PkdTree& tree, const Positions& positions, const Treelets& treelets, const TreeMargin& margin,
                 std::size_t most_rays)
       : rays_(tree, positions, margin, most_rays), walks_(treelets, tree.count, rays_, most_rays) {}
 
-  // Traces rays[0 .. count), at most longest_treelet_stream, for their visitors: a walk per octant.
-  void Run(const Ray* rays, Visitor* visitors, std::size_t count) {
+  // Traces rays[0 .. count), at most longest_treelet_stream: a walk per octant.
+  void Run(const Ray* rays, std::uint8_t* occluded, std::size_t count) {
     std::uint8_t octants[longest_treelet_stream];
     std::size_t sizes[9] = {};
-    rays_.Enter(rays, visitors, count, octants);
+    rays_.Enter(rays, occluded, count, octants);
     for (std::size_t i = 0; i < count; ++i) ++sizes[octants[i]];
     for (std::uint32_t octant = 0; octant < 8; ++octant) {
       if (sizes[octant] == 0) continue;
@@ -131,7 +127,7 @@ class TreeletStream {
   }
 
  private:
-  using Rays = TreeletRays<Positions, Visitor>;
+  using Rays = TreeletRays<Positions>;
   Rays rays_;
   TreeletWalks<Rays> walks_;
 };

@@ -67,6 +67,7 @@ struct Treelets {
   std::uint64_t nodes_at(unsigned level) const {
     return level == 0 ? 1 : std::uint64_t{1} << (root_bits + 3 * (level - 1));
   }
+  std::uint64_t node_count() const { return exist() ? level_begin[levels - 1] + nodes_at(levels - 1) : 0; }
   TreeletRun root() const { return {0, particles + 1}; }
 };
 

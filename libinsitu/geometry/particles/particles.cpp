@@ -10,7 +10,9 @@
 #include "core/error.h"
 #include "geometry/particles/particle_scan.h"
 #include "geometry/pkd/pkd_build.h"
+#include "geometry/pkd/treelet_build.h"
 #include "kernels/pkd_traverse.h"
+#include "kernels/treelet_traverse.h"
 
 namespace insitu {
 namespace {
@@ -82,6 +84,7 @@ void Particles::release() {
   arrays_.reset();
   moved_.clear();
   tree_ = {};
+  treelets_ = {};
 }
 
 void Particles::build(Budget& budget) {
@@ -102,6 +105,7 @@ void Particles::build(Budget& budget) {
   std::copy_n(scan.upper, 3, tree_.upper);
   tree_.radius_max = scan.radius_max;
   tree_.count = scan.drawn;
+  plan_treelets(budget);
   switch (order_) {
     case ParticleOrder::index:
       build_over_index(budget);
@@ -113,7 +117,35 @@ void Particles::build(Budget& budget) {
       build_copy(budget);
       break;
   }
+  add_treelets(budget);
   built_ = true;
+}
+
+// How many particles a treelet holds at most: measured, docs/results. Through an index every particle is a read of its
+// own, so that fewer boxes with more particles would cost more.
+constexpr double most_per_treelet = 16.0;
+
+void Particles::plan_treelets(const Budget& budget) {
+  treelets_ = {};
+  const double position_bytes =
+      static_cast<double>(tree_.count) * static_cast<double>(3 * kernels::size_of(tree_.position.type));
+  const double most = std::min(arrays_->treelet_share * position_bytes, static_cast<double>(budget.left()));
+  treelets_ =
+      treelet_shape(tree_.count, treelet_depth(tree_.count, most_per_treelet, static_cast<std::uint64_t>(most)));
+  if (!treelets_.exist()) return;
+  while (tree_.built_leaf > 1 && tree_.built_leaf > tree_.count / treelets_.count) tree_.built_leaf /= 2;
+}
+
+void Particles::add_treelets(Budget& budget) {
+  if (!treelets_.exist()) return treelet_nodes_.clear();
+  const std::uint64_t nodes = treelets_.node_count();
+  treelet_nodes_.reset(budget, nodes, "the treelets of the particles");
+  build_treelets(tree_, treelets_, treelet_nodes_.data());
+  treelets_.nodes = treelet_nodes_.data();
+}
+
+double Particles::particles_per_treelet() const {
+  return treelets_.exist() ? static_cast<double>(tree_.count) / static_cast<double>(treelets_.count) : 0.0;
 }
 
 namespace {
@@ -286,8 +318,18 @@ kernels::Ray to_lattice(const kernels::Ray& ray, const ParticleArrays& arrays) {
 
 }  // namespace
 
+void Particles::trace_first_hits(const kernels::Ray* rays, kernels::Hit* hits, std::size_t count) const {
+  if (treelets_.exist()) return kernels::treelet_first_hits(tree_, treelets_, rays, hits, count);
+  kernels::pkd_first_hits(tree_, rays, hits, count);
+}
+
+void Particles::trace_any_hits(const kernels::Ray* rays, std::uint8_t* occluded, std::size_t count) const {
+  if (treelets_.exist()) return kernels::treelet_any_hits(tree_, treelets_, rays, occluded, count);
+  kernels::pkd_any_hits(tree_, rays, occluded, count);
+}
+
 void Particles::first_hits(const kernels::Ray* rays, kernels::Hit* hits, std::size_t count) const {
-  if (!is_integer(arrays_->position.type)) return kernels::pkd_first_hits(tree_, rays, hits, count);
+  if (!is_integer(arrays_->position.type)) return trace_first_hits(rays, hits, count);
   const double scale = arrays_->position_scale;
   kernels::Ray local[batch];
   kernels::Hit local_hits[batch];
@@ -298,7 +340,7 @@ void Particles::first_hits(const kernels::Ray* rays, kernels::Hit* hits, std::si
       local[i].t_max = std::min(local[i].t_max, hits[begin + i].t / scale);
       local_hits[i] = {};
     }
-    kernels::pkd_first_hits(tree_, local, local_hits, n);
+    trace_first_hits(local, local_hits, n);
     for (std::size_t i = 0; i < n; ++i)
       if (local_hits[i].found() && local_hits[i].t * scale < hits[begin + i].t)
         hits[begin + i] = {local_hits[i].t * scale, local_hits[i].item};
@@ -306,12 +348,12 @@ void Particles::first_hits(const kernels::Ray* rays, kernels::Hit* hits, std::si
 }
 
 void Particles::any_hits(const kernels::Ray* rays, std::uint8_t* occluded, std::size_t count) const {
-  if (!is_integer(arrays_->position.type)) return kernels::pkd_any_hits(tree_, rays, occluded, count);
+  if (!is_integer(arrays_->position.type)) return trace_any_hits(rays, occluded, count);
   kernels::Ray local[batch];
   for (std::size_t begin = 0; begin < count; begin += batch) {
     const std::size_t n = std::min(batch, count - begin);
     for (std::size_t i = 0; i < n; ++i) local[i] = to_lattice(rays[begin + i], *arrays_);
-    kernels::pkd_any_hits(tree_, local, occluded + begin, n);
+    trace_any_hits(local, occluded + begin, n);
   }
 }
 

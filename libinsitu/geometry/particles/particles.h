@@ -10,6 +10,7 @@
 #include "geometry/array_view.h"
 #include "kernels/pkd_tree.h"
 #include "kernels/ray.h"
+#include "kernels/treelets.h"
 
 namespace insitu {
 
@@ -28,6 +29,7 @@ struct ParticleArrays {
   std::vector<double> type_radius;
   double radius_default = 0.0;  // 0: half the mean spacing
   double radius_scale = 1.0;
+  double treelet_share = 0.0;  // most memory for treelets, as a part of the bytes of the positions; 0: none
   std::vector<NamedView> attributes;
   std::vector<kernels::ArrayView> payload;
 };
@@ -61,6 +63,9 @@ class Particles {
   std::uint64_t drawn_count() const { return built_ ? tree_.count : 0; }
   std::uint64_t borrowed_bytes() const;
   std::uint64_t copied_bytes() const { return copy_.bytes(); }
+  std::uint64_t treelet_bytes() const { return treelet_nodes_.bytes(); }
+  // 0 when there are none.
+  double particles_per_treelet() const;
   std::uint64_t index_bytes() const { return index32_.bytes() + index64_.bytes(); }
 
   // World space, radii included; lower > upper when nothing is drawn.
@@ -87,11 +92,17 @@ class Particles {
   std::uint64_t checksum() const;
 
   const kernels::PkdTree& tree() const { return tree_; }
+  const kernels::Treelets& treelets() const { return treelets_; }
 
  private:
   void build_over_index(Budget& budget);
   void build_in_place(Budget& budget);
   void build_copy(Budget& budget);
+  // Settled before the tree, which has to be as fine as its treelets; their boxes are computed after it.
+  void plan_treelets(const Budget& budget);
+  void add_treelets(Budget& budget);
+  void trace_first_hits(const kernels::Ray* rays, kernels::Hit* hits, std::size_t count) const;
+  void trace_any_hits(const kernels::Ray* rays, std::uint8_t* occluded, std::size_t count) const;
   static bool prefer(const void* self, std::uint64_t a, std::uint64_t b);
 
   std::string name_;
@@ -104,6 +115,8 @@ class Particles {
   // Place in the tree -> item; with ParticleOrder::permute and on request: place now -> place when the step began.
   BudgetVector<std::uint32_t> index32_;
   BudgetVector<std::uint64_t> index64_;
+  kernels::Treelets treelets_;  // none when the tree is traced alone
+  BudgetVector<kernels::TreeletNode> treelet_nodes_;
   BudgetVector<std::byte> copy_;  // packed positions in tree order
 };
 

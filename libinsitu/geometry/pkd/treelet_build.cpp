@@ -184,9 +184,7 @@ Treelets treelet_shape(std::uint64_t particles, unsigned depth) {
 }
 
 std::uint64_t treelet_bytes(std::uint64_t particles, unsigned depth) {
-  const Treelets shape = treelet_shape(particles, depth);
-  if (!shape.exist()) return 0;
-  return (shape.level_begin[shape.levels - 1] + shape.nodes_at(shape.levels - 1)) * sizeof(TreeletNode);
+  return treelet_shape(particles, depth).node_count() * sizeof(TreeletNode);
 }
 
 unsigned treelet_depth(std::uint64_t particles, double particles_per_treelet, std::uint64_t most_bytes) {

@@ -8,8 +8,10 @@
 #include <iomanip>
 #include <sstream>
 
+#include "geometry/pkd/treelet_build.h"
 #include "kernels/pkd_reference.h"
 #include "kernels/pkd_traverse.h"
+#include "kernels/treelet_traverse.h"
 #include "unit/kernels/simd_guard.h"
 
 namespace insitu::testing {
@@ -42,6 +44,21 @@ std::string describe(const Hit& hit) {
   out << std::setprecision(17) << "t " << hit.t << " item " << hit.item;
   return out.str();
 }
+
+class TestTreelets {
+ public:
+  TestTreelets(const PkdTree& tree, unsigned depth)
+      : nodes_(treelet_bytes(tree.count, depth) / sizeof(kernels::TreeletNode)),
+        treelets_(treelet_shape(tree.count, depth)) {
+    build_treelets(tree, treelets_, nodes_.data());
+    treelets_.nodes = nodes_.data();
+  }
+  const kernels::Treelets& treelets() const { return treelets_; }
+
+ private:
+  std::vector<kernels::TreeletNode> nodes_;
+  kernels::Treelets treelets_;
+};
 
 void normalise(double v[3]) {
   const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
@@ -185,6 +202,12 @@ HitCounts expect_brute_force_hits(const PkdTree& tree, const std::vector<Ray>& r
   const auto by_item = [](const Span& a, const Span& b) { return a.item < b.item; };
   for (std::vector<Span>& spans : expected_spans) std::sort(spans.begin(), spans.end(), by_item);
 
+  // Of one level, of two, and as many as there can be, where the particles are enough.
+  std::vector<TestTreelets> treelets;
+  const auto deepest = static_cast<unsigned>(std::bit_width(tree.count));
+  for (const unsigned depth : {1u, 4u, deepest - 1})
+    if (depth >= 1 && depth < deepest) treelets.emplace_back(tree, depth);
+
   for_each_simd_target([&](const char* target) {
     std::vector<Hit> hits(rays.size());
     std::vector<std::uint8_t> occluded(rays.size(), 0);
@@ -209,6 +232,19 @@ HitCounts expect_brute_force_hits(const PkdTree& tree, const std::vector<Ray>& r
                       [](const Span& a, const Span& b) { return is_same(a, b); }))
         complain(i, std::to_string(spans.size()) + " spans differ from the " + std::to_string(truth.size()) +
                         " of the brute force");
+    }
+    for (const TestTreelets& own : treelets) {
+      std::fill(hits.begin(), hits.end(), Hit{});
+      std::fill(occluded.begin(), occluded.end(), 0);
+      kernels::treelet_first_hits(tree, own.treelets(), rays.data(), hits.data(), rays.size());
+      kernels::treelet_any_hits(tree, own.treelets(), rays.data(), occluded.data(), rays.size());
+      const std::string with = " with " + std::to_string(own.treelets().count) + " treelets";
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (!is_same(hits[i], expected[i]))
+          complain(i, "first hit " + describe(hits[i]) + " instead of " + describe(expected[i]) + with);
+        if ((occluded[i] != 0) != expected[i].found())
+          complain(i, std::string("any hit says ") + (occluded[i] != 0 ? "yes" : "no") + with);
+      }
     }
     EXPECT_EQ(wrong, 0u) << what << ", target " << target << ", " << rays.size() << " rays. First: " << first_wrong;
   });
