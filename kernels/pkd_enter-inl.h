@@ -21,10 +21,12 @@ struct RayColumns {
   HWY_ALIGN double origin[3][size];
   HWY_ALIGN double direction[3][size];
   HWY_ALIGN double t_min[size];
+  HWY_ALIGN double t_max[size];
 
   // rays[0 .. count), at most `size`; lanes behind them repeat the first.
   HWY_INLINE void Load(const Ray* rays, std::size_t count) {
-    static_assert(offsetof(Ray, direction) == 3 * sizeof(double) && offsetof(Ray, t_min) == 6 * sizeof(double));
+    static_assert(offsetof(Ray, direction) == 3 * sizeof(double) && offsetof(Ray, t_min) == 6 * sizeof(double) &&
+                  offsetof(Ray, t_max) == 7 * sizeof(double));
 #if HWY_TARGET == HWY_SCALAR
     for (std::size_t i = 0; i < size; ++i) {
       const Ray& ray = rays[i < count ? i : 0];
@@ -33,6 +35,7 @@ struct RayColumns {
         direction[c][i] = ray.direction[c];
       }
       t_min[i] = ray.t_min;
+      t_max[i] = ray.t_max;
     }
 #else
     // Two rays at a time, by hand: left alone, compilers gather, which takes several times as long.
@@ -48,10 +51,21 @@ struct RayColumns {
       hn::Store(hn::InterleaveUpper(d, zu_a, zu_b), d, direction[0] + i);
       hn::Store(hn::InterleaveLower(d, vw_a, vw_b), d, direction[1] + i);
       hn::Store(hn::InterleaveUpper(d, vw_a, vw_b), d, direction[2] + i);
-      t_min[i] = a[6];
-      t_min[i + 1] = b[6];
+      const auto limits_a = hn::LoadU(d, a + 6), limits_b = hn::LoadU(d, b + 6);
+      hn::Store(hn::InterleaveLower(d, limits_a, limits_b), d, t_min + i);
+      hn::Store(hn::InterleaveUpper(d, limits_a, limits_b), d, t_max + i);
     }
 #endif
+  }
+
+  // The largest magnitude among the coordinates of the origins.
+  HWY_INLINE double Distance() const {
+    const hn::CappedTag<double, size> d;
+    auto largest = hn::Zero(d);
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t i = 0; i < size; i += hn::Lanes(d))
+        largest = hn::Max(largest, hn::Abs(hn::Load(d, origin[c] + i)));
+    return hn::GetLane(hn::MaxOfLanes(d, largest));
   }
 };
 

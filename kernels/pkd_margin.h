@@ -25,6 +25,9 @@ struct TreeMargin {
   bool Fits(const Ray& ray) const {
     double distance = 0.0;
     for (int c = 0; c < 3; ++c) distance = std::max(distance, std::abs(ray.origin[c]));
+    return Fits(distance);
+  }
+  bool Fits(double distance) const {
     return fits && 128.0 * f64_unit * distance < 4.0 * f32_unit * extent;
   }
 

@@ -15,9 +15,12 @@ class FirstHitVisitor {
   static constexpr bool one_of_coincident = true;
 
   FirstHitVisitor() = default;
-  FirstHitVisitor(const Ray& ray, Hit& hit) : hit_(&hit), limit_(std::min(ray.t_max, hit.t)) {}
+  // `is_here`: the hit is one of this tree.
+  FirstHitVisitor(const Ray& ray, Hit& hit, bool is_here = false)
+      : hit_(&hit), limit_(std::min(ray.t_max, hit.t)), here_(is_here) {}
 
   double t_limit() const { return limit_; }
+  bool is_here() const { return here_; }
 
   template <class Positions>
   bool visit(const PkdTree& tree, const Positions& positions, std::uint64_t place, const Ray& ray) {

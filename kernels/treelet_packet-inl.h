@@ -8,6 +8,7 @@
 #endif
 
 #include "kernels/pkd_enter-inl.h"
+#include "kernels/pkd_single-inl.h"
 #include "kernels/treelet_leaf-inl.h"
 #include "kernels/treelet_walk-inl.h"
 
@@ -47,6 +48,7 @@ class TreeletPacket {
   HWY_ALIGN float t_certain[size];  // candidates begin behind it
   HWY_ALIGN std::uint32_t best_place[size];
   std::uint32_t noted;
+  std::uint32_t here;  // lanes whose hits are of this tree
   std::uint32_t first_ray;
 
   // Of the rays of `active`, all of one octant.
@@ -150,16 +152,19 @@ class TreeletPackets {
         packets_(new TreeletPacket[(most_rays + size - 1) / size]),
         beams_(new RayBeam[most_octants * ((most_rays + size - 1) / size)]) {}
 
-  // Packets of rays[0 .. count), all of which fit the margin. A beam of octant o is put down by add(o, beam).
+  // Packets of rays[0 .. count). A beam of octant o is put down by add(o, beam).
   template <class AddBeam>
-  void Enter(const Ray* rays, FirstHitVisitor* visitors, std::size_t count, const AddBeam& add) {
+  void Enter(const Ray* rays, Hit* hits, std::size_t count, const AddBeam& add) {
     rays_ = rays;
-    visitors_ = visitors;
+    hits_ = hits;
     std::uint32_t beams = 0;
     packet_count_ = 0;
     for (std::size_t first = 0; first < count; first += size) {
+      // The rays of the packet after the next.
+      const auto* const ahead = reinterpret_cast<const std::byte*>(rays + std::min(first + 2 * size, count));
+      for (std::size_t byte = 0; byte < size * sizeof(Ray); byte += 64) __builtin_prefetch(ahead + byte);
       TreeletPacket& packet = packets_[packet_count_];
-      EnterPacket(packet, first, std::min(size, count - first));
+      if (!EnterPacket(packet, first, std::min(size, count - first))) continue;
       std::uint32_t signs[3];
       for (std::size_t c = 0; c < 3; ++c) signs[c] = packet.Negative(c);
       for (std::uint32_t left = packet.lanes.inside; left != 0;) {
@@ -222,19 +227,29 @@ class TreeletPackets {
   using V = hn::Vec<D>;
   static constexpr std::uint64_t most_noted = std::uint64_t{1} << 32;
 
-  void EnterPacket(TreeletPacket& packet, std::size_t first, std::size_t count) {
-    double t_limits[size];
-    for (std::size_t i = 0; i < count; ++i) t_limits[i] = visitors_[first + i].t_limit();
+  // False: the rays come from too far away, and have been traced one by one.
+  bool EnterPacket(TreeletPacket& packet, std::size_t first, std::size_t count) {
     packet.rays.Load(rays_ + first, count);
+    if (HWY_UNLIKELY(!margin_.Fits(packet.rays.Distance()))) {
+      for (std::size_t i = first; i < first + count; ++i) {
+        FirstHitVisitor visitor(rays_[i], hits_[i]);
+        TraverseTree(tree_, positions_, rays_[i], visitor);
+      }
+      return false;
+    }
+    double t_limits[size];
+    for (std::size_t i = 0; i < count; ++i) t_limits[i] = std::min(packet.rays.t_max[i], hits_[first + i].t);
     EnterTree(tree_, margin_, packet.rays, t_limits, count, true, packet.lanes);
     packet.first_ray = static_cast<std::uint32_t>(first);
     packet.noted = 0;
+    packet.here = 0;
     for (std::size_t i = 0; i < size; ++i) {
       // Whether a noted candidate is the excluded item is left to the confirmation.
       const bool may_note = i < count && rays_[first + i].exclude == no_item && tree_.count <= most_noted;
       packet.best_earliest[i] = may_note ? packet.lanes.t_high[i] - shrink_ : -std::numeric_limits<float>::infinity();
       packet.t_certain[i] = packet.lanes.t_low[i] + shrink_;
     }
+    return true;
   }
 
   HWY_INLINE static std::uint32_t MeetBeam(const NearFarPlanes& planes, const RayBeam& beam) {
@@ -341,8 +356,9 @@ class TreeletPackets {
 
   void Confirm(TreeletPacket& packet, std::size_t lane, std::uint64_t place) {
     const Ray& ray = rays_[packet.first_ray + lane];
-    FirstHitVisitor& visitor = visitors_[packet.first_ray + lane];
+    FirstHitVisitor visitor(ray, hits_[packet.first_ray + lane], (packet.here >> lane & 1) != 0);
     visitor.visit(tree_, positions_, place, ray);
+    packet.here |= (visitor.is_here() ? 1u : 0u) << lane;
     const double t = visitor.t_limit() - packet.lanes.t_shift[lane];
     packet.lanes.t_high[lane] = std::min(packet.lanes.t_high[lane], static_cast<float>(t + margin_.value));
     if (ray.exclude == no_item) packet.best_earliest[lane] = static_cast<float>(t - margin_.value);
@@ -388,8 +404,9 @@ class TreeletPackets {
     }
     for (std::uint32_t left = packet.noted; left != 0; left &= left - 1) {
       const std::size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(left);
+      const std::size_t ray = packet.first_ray + lane;
       if (t[lane] != std::numeric_limits<double>::infinity())
-        visitors_[packet.first_ray + lane].offer(tree_, items[lane], t[lane]);
+        FirstHitVisitor(rays_[ray], hits_[ray], (packet.here >> lane & 1) != 0).offer(tree_, items[lane], t[lane]);
     }
   }
 
@@ -405,7 +422,7 @@ class TreeletPackets {
   const TreeletLeaf<Positions> leaf_;
   const float shrink_;  // two margins
   const Ray* rays_ = nullptr;
-  FirstHitVisitor* visitors_ = nullptr;
+  Hit* hits_ = nullptr;
   std::size_t packet_count_ = 0;
   std::unique_ptr<TreeletPacket[]> packets_;
   std::unique_ptr<RayBeam[]> beams_;
@@ -421,10 +438,10 @@ class TreeletPacketStream {
                       const TreeMargin& margin, std::size_t most_rays)
       : packets_(tree, positions, margin, most_rays), walks_(treelets, tree.count, packets_, 8 * most_rays / 16 + 8) {}
 
-  // rays[0 .. count), at most longest_packet_stream, all of which fit the margin.
-  void Run(const Ray* rays, FirstHitVisitor* visitors, std::size_t count) {
+  // rays[0 .. count), at most longest_packet_stream.
+  void Run(const Ray* rays, Hit* hits, std::size_t count) {
     std::size_t sizes[8] = {};
-    packets_.Enter(rays, visitors, count, [&](std::uint32_t octant, std::uint32_t beam) {
+    packets_.Enter(rays, hits, count, [&](std::uint32_t octant, std::uint32_t beam) {
       if (octant_of_.size() <= beam) octant_of_.resize(beam + 1);
       octant_of_[beam] = static_cast<std::uint8_t>(octant);
       ++sizes[octant];

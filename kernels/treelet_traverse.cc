@@ -20,20 +20,8 @@ void TreeletFirstHitsIn(const PkdTree& tree, const Treelets& treelets, const Tre
   const Positions positions(tree);
   const std::size_t longest = std::min(count, longest_packet_stream);
   TreeletPacketStream<Positions> stream(tree, positions, treelets, margin, longest);
-  FirstHitVisitor visitors[longest_packet_stream];
-  for (std::size_t begin = 0; begin < count; begin += longest) {
-    const std::size_t n = std::min(longest, count - begin);
-    bool all_fit = true;
-    for (std::size_t i = 0; i < n; ++i) {
-      visitors[i] = FirstHitVisitor(rays[begin + i], hits[begin + i]);
-      all_fit = all_fit && margin.Fits(rays[begin + i]);
-    }
-    if (HWY_LIKELY(all_fit)) {
-      stream.Run(rays + begin, visitors, n);
-    } else {
-      for (std::size_t i = 0; i < n; ++i) TraverseTree(tree, positions, rays[begin + i], visitors[i]);
-    }
-  }
+  for (std::size_t begin = 0; begin < count; begin += longest)
+    stream.Run(rays + begin, hits + begin, std::min(longest, count - begin));
 }
 
 template <class Positions>

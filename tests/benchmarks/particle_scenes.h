@@ -12,7 +12,8 @@ namespace bench {
 struct ParticleScene {
   std::string name;
   std::vector<float> position;  // x y z x y z ...
-  double radius;                // one for all
+  std::vector<float> radii;     // one each; empty: `radius` for all
+  double radius = 0.0;
   std::uint64_t count() const { return position.size() / 3; }
 };
 

@@ -1,0 +1,230 @@
+#include "particle_frames.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+
+#include "embree_spheres.h"
+#include "measure.h"
+#include "own_particles.h"
+
+namespace bench {
+namespace {
+
+using insitu::ParticleOrder;
+using insitu::kernels::Hit;
+using insitu::kernels::Ray;
+
+template <class Trace>
+void for_tiles(std::size_t count, const Trace& trace) {
+  const std::size_t tiles = (count + tile_rays - 1) / tile_rays;
+  tbb::parallel_for(std::size_t{0}, tiles, [&](std::size_t tile) {
+    const std::size_t begin = tile * tile_rays;
+    trace(begin, std::min(tile_rays, count - begin));
+  });
+}
+
+// The fastest way of Embree to trace some rays, found with one run of each.
+struct BestWay {
+  const EmbreeSpheres* spheres = nullptr;
+  EmbreeTrace trace = EmbreeTrace::single;
+  double seconds = 1e30;
+  std::string name;
+};
+
+constexpr EmbreeTrace all_traces[] = {EmbreeTrace::single, EmbreeTrace::packet8, EmbreeTrace::packet16,
+                                      EmbreeTrace::stream};
+
+struct Candidate {
+  std::string name;
+  EmbreeGeometry geometry;
+  std::unique_ptr<EmbreeSpheres> spheres;
+};
+
+void trace_embree(EmbreeRays& rays, RTCScene scene, bool occlusion) {
+  if (occlusion) {
+    rays.any_hits(scene, false);
+  } else {
+    rays.first_hits(scene, true);
+  }
+}
+
+BestWay find_best(const std::vector<Candidate>& candidates, EmbreeGeometry geometry, const std::vector<Ray>& rays,
+                  bool occlusion, insitu::Workers& workers) {
+  BestWay best;
+  for (const EmbreeTrace trace : all_traces) {
+    EmbreeRays prepared(rays, trace);
+    for (const Candidate& candidate : candidates) {
+      if (candidate.geometry != geometry) continue;
+      prepared.reset();
+      const auto start = std::chrono::steady_clock::now();
+      workers.run([&] { trace_embree(prepared, candidate.spheres->scene(), occlusion); });
+      const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      if (seconds < best.seconds)
+        best = {candidate.spheres.get(), trace, seconds, candidate.name + "/" + name_of(trace)};
+    }
+  }
+  return best;
+}
+
+// One of our structures over the particles, with the occlusion rays of a view: the same rays for all, but each knows
+// the particles by numbers of its own.
+struct Own {
+  std::string name;
+  std::unique_ptr<OwnParticles> particles;
+  std::vector<Ray> ao;
+};
+
+std::vector<Hit> trace_camera(const Own& own, const std::vector<Ray>& camera) {
+  std::vector<Hit> hits(camera.size());
+  own.particles->set().first_hits(camera.data(), hits.data(), camera.size());
+  return hits;
+}
+
+void prepare_view(std::vector<Own>& owns, const std::vector<Ray>& camera, double ao_reach) {
+  const std::vector<Hit> hits = trace_camera(owns.front(), camera);
+  owns.front().ao = occlusion_rays(camera, hits, owns.front().particles->position, ao_reach);
+  for (std::size_t k = 1; k < owns.size(); ++k) {
+    const std::vector<Hit> own_hits = trace_camera(owns[k], camera);
+    owns[k].ao = owns.front().ao;
+    for (std::size_t i = 0, next = 0; i < camera.size(); ++i)
+      if (hits[i].found()) owns[k].ao[next++].exclude = own_hits[i].item;
+  }
+}
+
+struct Seconds {
+  double camera;
+  double ao;
+  double frame() const { return camera + ao; }
+};
+
+void measure_view(const FrameOptions& options, const ParticleScene& scene, const std::string& view,
+                  const std::vector<Candidate>& candidates, std::vector<Own>& owns, std::vector<insitu::Workers>& teams,
+                  FrameMetrics& metrics, nlohmann::ordered_json& rows) {
+  const std::vector<Ray> camera = camera_rays(view, options.image_edge_px);
+  prepare_view(owns, camera, options.ao_reach);
+  const std::vector<Ray>& ao = owns.front().ao;
+  const BestWay ways[2][2] = {{find_best(candidates, EmbreeGeometry::sphere_point, camera, false, teams.back()),
+                               find_best(candidates, EmbreeGeometry::sphere_point, ao, true, teams.back())},
+                              {find_best(candidates, EmbreeGeometry::user_spheres, camera, false, teams.back()),
+                               find_best(candidates, EmbreeGeometry::user_spheres, ao, true, teams.back())}};
+
+  std::vector<std::vector<double>> own_frames(owns.size());
+  for (std::size_t threads = 1; threads <= teams.size(); ++threads) {
+    insitu::Workers& workers = teams[threads - 1];
+    std::vector<Hit> hits(camera.size());
+    std::vector<std::uint8_t> occluded(ao.size());
+    std::vector<Contender> contenders;
+    std::vector<std::unique_ptr<EmbreeRays>> prepared;
+    for (const auto& geometry : ways) {
+      for (const bool occlusion : {false, true}) {
+        const BestWay& way = geometry[occlusion ? 1 : 0];
+        prepared.push_back(std::make_unique<EmbreeRays>(occlusion ? ao : camera, way.trace));
+        EmbreeRays* rays = prepared.back().get();
+        contenders.push_back({way.name, [rays] { rays->reset(); },
+                              [rays, &workers, spheres = way.spheres, occlusion] {
+                                workers.run([&] { trace_embree(*rays, spheres->scene(), occlusion); });
+                              }});
+      }
+    }
+    for (const Own& own : owns) {
+      contenders.push_back({own.name + " camera", [&] { std::fill(hits.begin(), hits.end(), Hit{}); },
+                            [&] {
+                              workers.run([&] {
+                                for_tiles(camera.size(), [&](std::size_t begin, std::size_t n) {
+                                  own.particles->set().first_hits(&camera[begin], &hits[begin], n);
+                                });
+                              });
+                            }});
+      contenders.push_back({own.name + " ao", [&] { std::fill(occluded.begin(), occluded.end(), 0); },
+                            [&] {
+                              workers.run([&] {
+                                for_tiles(own.ao.size(), [&](std::size_t begin, std::size_t n) {
+                                  own.particles->set().any_hits(&own.ao[begin], &occluded[begin], n);
+                                });
+                              });
+                            }});
+    }
+    const std::vector<double> s = take_turns(contenders, options.repetitions);
+    const Seconds sphere{s[0], s[1]};
+    const Seconds best{std::min(s[0], s[2]), std::min(s[1], s[3])};
+
+    const auto mrays = [](std::size_t n, double seconds) { return static_cast<double>(n) / seconds / 1e6; };
+    const auto print = [&](const char* name, double camera_s, double ao_s) {
+      std::printf(" | %s %.2f + %.2f", name, mrays(camera.size(), camera_s), mrays(ao.size(), ao_s));
+    };
+    std::printf("%-9s %4.1fM %-5s %zu thr", scene.name.c_str(), static_cast<double>(scene.count()) / 1e6, view.c_str(),
+                threads);
+    print("sphere", s[0], s[1]);
+    print("user", s[2], s[3]);
+    for (std::size_t k = 0; k < owns.size(); ++k) {
+      const Seconds own{s[4 + 2 * k], s[5 + 2 * k]};
+      own_frames[k].push_back(own.frame());
+      const std::string& name = owns[k].name;
+      print(name.c_str(), own.camera, own.ao);
+      metrics.note_speed(name + "_ao_speed_vs_embree_sphere", sphere.frame() / own.frame());
+      metrics.note_speed(name + "_ao_speed_vs_embree_best", best.frame() / own.frame());
+      metrics.note_speed(name + "_primary_speed_vs_embree_sphere", sphere.camera / own.camera);
+      metrics.note_speed(name + "_primary_speed_vs_embree_best", best.camera / own.camera);
+    }
+    std::printf(" Mrays/s | frame vs sphere, vs best:");
+    for (std::size_t k = 0; k < owns.size(); ++k)
+      std::printf(" %s %.2f %.2f", owns[k].name.c_str(), sphere.frame() / own_frames[k].back(),
+                  best.frame() / own_frames[k].back());
+    std::printf("\n");
+    if (threads == teams.size())
+      std::printf("%28s %s, %s; %s, %s\n", "Embree's best:", ways[0][0].name.c_str(), ways[0][1].name.c_str(),
+                  ways[1][0].name.c_str(), ways[1][1].name.c_str());
+    std::fflush(stdout);
+    nlohmann::ordered_json row = {{"scene", scene.name}, {"particles", scene.count()},   {"view", view},
+                                  {"threads", threads},  {"camera_rays", camera.size()}, {"ao_rays", ao.size()}};
+    for (std::size_t i = 0; i < contenders.size(); ++i) row["seconds"][contenders[i].name] = s[i];
+    rows.push_back(row);
+  }
+  if (teams.size() > 1)
+    for (std::size_t k = 0; k < owns.size(); ++k)
+      metrics.note_speed((k == 0 ? "" : owns[k].name + "_") + "scaling_2_threads", own_frames[k][0] / own_frames[k][1]);
+}
+
+}  // namespace
+
+void measure_frames(const FrameOptions& options, const ParticleScene& scene, std::vector<insitu::Workers>& teams,
+                    FrameMetrics& metrics, nlohmann::ordered_json& rows) {
+  insitu::Workers& workers = teams.back();
+  metrics.note_bytes("pkd_extra_bytes_per_particle",
+                     extra_bytes_per_particle(scene, ParticleOrder::permute, 0.0, workers));
+  metrics.note_bytes("pkd_index_extra_bytes_per_particle",
+                     extra_bytes_per_particle(scene, ParticleOrder::index, 0.0, workers));
+
+  std::vector<Own> owns;
+  const auto add = [&](const char* name, ParticleOrder order, double share) {
+    owns.push_back({name, std::make_unique<OwnParticles>(scene, order, share), {}});
+    workers.run([&] { owns.back().particles->build(); });
+  };
+  add("pkd", ParticleOrder::permute, 0.0);
+  add("treelet", ParticleOrder::permute, options.treelet_share);
+  add("pkd_index", ParticleOrder::index, 0.0);
+  add("treelet_index", ParticleOrder::index, options.treelet_share);
+  const OwnParticles& treelet = *owns[1].particles;
+  metrics.note_bytes("treelet_bytes_ratio",
+                     static_cast<double>(treelet.set().treelet_bytes()) / static_cast<double>(treelet.data_bytes()));
+
+  std::vector<Candidate> candidates;
+  for (const EmbreeGeometry geometry : {EmbreeGeometry::sphere_point, EmbreeGeometry::user_spheres}) {
+    for (const RTCBuildQuality quality : {RTC_BUILD_QUALITY_LOW, RTC_BUILD_QUALITY_MEDIUM, RTC_BUILD_QUALITY_HIGH}) {
+      if (options.quick && quality != RTC_BUILD_QUALITY_MEDIUM) continue;
+      Candidate candidate{std::string(name_of(geometry)) + "/" + name_of(quality), geometry,
+                          std::make_unique<EmbreeSpheres>(scene, geometry, quality)};
+      workers.run([&] { candidate.spheres->build(); });
+      metrics.note_bytes(std::string("embree_") + name_of(geometry) + "_bytes_per_particle",
+                         static_cast<double>(candidate.spheres->bytes()) / static_cast<double>(scene.count()));
+      candidates.push_back(std::move(candidate));
+    }
+  }
+  for (const char* view : {"far", "close"}) measure_view(options, scene, view, candidates, owns, teams, metrics, rows);
+}
+
+}  // namespace bench
