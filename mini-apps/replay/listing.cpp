@@ -150,6 +150,7 @@ std::uint64_t print_listing(std::ostream& out, const std::string& path, const Op
   }
   out << path << ": " << format_title(format);
   if (!reader->remark().empty()) out << ", " << reader->remark();
+  for (const std::string& trajectory : read.trajectories) out << "\n  moved by    " << trajectory;
   out << "\n  steps       " << summary.frames;
   if (summary.first_number) out << ", numbered " << span_text(*summary.first_number, *summary.last_number);
   out << '\n';

@@ -189,7 +189,7 @@ TEST_F(Program, WrongOptionsExitWithTwo) {
       {"water.xyz --color speed", "expected one of element, type"},
       {"water.xyz --radius size", "expected one of element, type"},
       {"water.xyz --colormap rainbow", "viridis"},
-      {"water.xyz --format gro", "xyz"},
+      {"water.xyz --format doc", "xyz"},
       {"water.xyz --order random", "permute"},
       {"water.xyz --range 2 1", "the smaller one first"},
       {"water.xyz --size big", "expected WIDTHxHEIGHT"},
