@@ -83,7 +83,9 @@ Hdf5File::Hdf5File(std::string path) : path_(std::move(path)) {
     H5Pset_fapl_core(access, std::size_t{1} << 20, 0);
     H5Pset_file_image(access, unpacked_.data(), unpacked_.size());
   }
-  file_ = H5Fopen(path_.c_str(), H5F_ACC_RDONLY, access);
+  // An image in memory must not bear the name of a file that there is.
+  const std::string name = bytes.is_compressed() ? path_ + "/unpacked" : path_;
+  file_ = H5Fopen(name.c_str(), H5F_ACC_RDONLY, access);
   if (file_ < 0) fail_with_reason("cannot be read as HDF5");
   unpacked_ = std::vector<char>();  // the library has a copy
 }

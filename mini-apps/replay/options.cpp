@@ -74,7 +74,6 @@ void add_reading(CLI::App& app, Options& options, Texts& texts) {
          wrapped("Positions, step by step, for the particles of FILE, such as those of a DCD file; may be given "
                  "more than once"))
       ->type_name("FILE")
-      ->expected(1)
       ->allow_extra_args(false)
       ->group(group);
   app.add_option("--format", texts.format, wrapped("What the files are, when neither content nor ending tells"))

@@ -114,6 +114,10 @@ std::optional<PieceName> piece_name(const std::string& path) {
   return name;
 }
 
+namespace {
+std::string name_of(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+}  // namespace
+
 std::vector<std::string> paths_of_pieces(const std::string& path, std::uint64_t pieces) {
   if (pieces <= 1) return {path};
   const auto name = piece_name(path);
@@ -122,14 +126,15 @@ std::vector<std::string> paths_of_pieces(const std::string& path, std::uint64_t 
   if (name->number != 0) {
     throw InputError(path, 0,
                      "is a part of a snapshot of " + all + ", expected the first one, " +
-                         replay::quoted(name->path(0)) + " (the others are found by it)");
+                         replay::quoted(name_of(name->path(0))) + " (the others are found by it)");
   }
   std::vector<std::string> paths;
   for (std::uint64_t i = 0; i < pieces; ++i) {
     paths.push_back(name->path(i));
     if (!std::filesystem::exists(paths.back())) {
       throw InputError(
-          path, 0, "is a part of a snapshot of " + all + ", of which " + replay::quoted(paths.back()) + " is missing");
+          path, 0,
+          "is a part of a snapshot of " + all + ", of which " + replay::quoted(name_of(paths.back())) + " is missing");
     }
   }
   return paths;

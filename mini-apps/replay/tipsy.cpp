@@ -61,6 +61,7 @@ class TipsyReader : public FrameReader {
     for (const std::uint64_t wide : {0u, 3u, 6u}) {
       for (const std::uint64_t header_bytes : {tipsy_header_bytes, tipsy_header_bytes - 4}) {
         if (bytes_.size() != bytes_with(header_bytes, wide)) continue;
+        if (header_bytes < tipsy_header_bytes && header.padding_is_zero) continue;  // no mass of a first particle
         header_bytes_ = header_bytes;
         wide_ = wide;
         return;
@@ -122,6 +123,7 @@ std::optional<TipsyHeader> tipsy_header(std::string_view first_bytes) {
     for (std::size_t k = 0; k < 3; ++k) header.count[k] = number_at(16 + 4 * k, std::uint32_t{0});
     const std::uint64_t all = number_at(8, std::uint32_t{0});
     const std::uint32_t dimensions = number_at(12, std::uint32_t{0});
+    header.padding_is_zero = first_bytes.size() >= tipsy_header_bytes && number_at(28, std::uint32_t{0}) == 0;
     const bool adds_up = all > 0 && all == header.count[0] + header.count[1] + header.count[2];
     if (adds_up && dimensions >= 1 && dimensions <= 3) return header;
   }

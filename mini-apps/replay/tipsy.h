@@ -15,6 +15,7 @@ struct TipsyHeader {
   std::endian order = std::endian::big;
   double time = 0.0;                        // or the scale factor
   std::array<std::uint64_t, 3> count = {};  // gas, dark matter, stars
+  bool padding_is_zero = false;             // the last 4 bytes, which some writers leave out
 };
 
 // Nothing when the bytes are no such header in either byte order.

@@ -1,5 +1,6 @@
 // Positions from one file for the particles of another: topologies such as PDB files have names and elements and one
 // step, trajectories such as DCD files have steps and nothing but positions.
+#include <filesystem>
 #include <utility>
 
 #include "input_error.h"
@@ -40,7 +41,8 @@ class TrajectoryReader : public FrameReader {
     if (frame.count() != particles_.count()) {
       throw InputError(paths_[opened_ - 1], 0,
                        "has " + std::to_string(frame.count()) + " particles in a step, expected " +
-                           std::to_string(particles_.count()) + " as " + quoted(path_) + " has");
+                           std::to_string(particles_.count()) + " as " +
+                           replay::quoted(std::filesystem::path(path_).filename().string()) + " has");
     }
     if (by_id_) sort_by(frame, "id");
     for (const Attribute& attribute : particles_.attributes) {
