@@ -43,6 +43,15 @@ std::optional<Format> format_of_bytes(const std::string& path) {
   if (dcd_layout(begin)) return Format::dcd;
   if (gadget_layout(begin)) return Format::gadget;
   if (tipsy_header(begin)) return Format::tipsy;
+  // Known, but not read: docs/replay.md says why.
+  constexpr std::pair<std::string_view, const char*> others[] = {{std::string_view("\0\0\7\xCB", 4), "XTC"},
+                                                                 {std::string_view("\0\0\7\xC9", 4), "TRR"}};
+  for (const auto& [magic, name] : others) {
+    if (std::string_view(begin).substr(0, magic.size()) != magic) continue;
+    throw InputError(path, 0,
+                     std::string("is a trajectory of GROMACS in the format ") + name +
+                         ", which is not read here; \"gmx trjconv\" makes a GRO file of it");
+  }
   return std::nullopt;
 }
 

@@ -39,6 +39,13 @@ TEST(Format, IsAskedForOtherwise) {
               HasSubstr("b.xyz:1: the line holds binary"));
 }
 
+TEST(Format, NamesTheTrajectoriesThatAreNotRead) {
+  Folder folder;
+  EXPECT_THAT(error_of(folder.write("a.xtc", std::string_view("\0\0\7\xCB\0\0\0\1", 8))),
+              HasSubstr("a.xtc: is a trajectory of GROMACS in the format XTC, which is not read here"));
+  EXPECT_THAT(error_of(folder.write("a", std::string_view("\0\0\7\xC9\0\0\0\15", 8))), HasSubstr("format TRR"));
+}
+
 TEST(Format, CanBeForced) {
   Folder folder;
   ReadOptions options;
