@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "input_error.h"
@@ -17,7 +18,7 @@ void ByteReader::Close::operator()(gzFile_s* file) const { gzclose_r(file); }
 ByteReader::ByteReader(std::string path) : path_(std::move(path)) {
   if (const std::string reason = reason_not_to_open(path_); !reason.empty()) throw InputError(path_, 0, reason);
   file_.reset(gzopen(path_.c_str(), "rb"));
-  if (!file_) throw InputError(path_, 0, "cannot be opened: " + std::string(std::strerror(errno)));
+  if (!file_) throw InputError(path_, 0, "cannot be opened: " + std::generic_category().message(errno));
   gzbuffer(file_.get(), 1u << 17);
   compressed_ = gzdirect(file_.get()) == 0;
   if (!compressed_) size_ = std::filesystem::file_size(path_);

@@ -109,14 +109,16 @@ class SnapshotReader : public FrameReader {
     builder.add_positions(file.read(coordinates));
     if (type >= 0) builder.add_type(type, count);
     for (const std::string& name : file.arrays_in(group.empty() ? "/" : group)) {
-      if (name != "Coordinates") read_array(file, group + "/" + name, name, rows, first, builder);
+      if (name != "Coordinates") read_array(file, group, name, rows, first, builder);
     }
     add_header_mass(file, type, first, count, frame, builder);
   }
 
-  void read_array(const Hdf5File& file, const std::string& path, const std::string& name, std::uint64_t rows,
+  void read_array(const Hdf5File& file, const std::string& group, const std::string& name, std::uint64_t rows,
                   std::size_t first, SnapshotBuilder& builder) {
     constexpr std::uint64_t most_columns = 64;
+    std::string path = group;
+    path.append("/").append(name);
     const Hdf5File::Array shape = file.describe(path);
     const std::uint64_t columns = shape.extent.size() == 2 ? shape.extent[1] : 1;
     const bool table = shape.extent.size() == 1 || shape.extent.size() == 2;
