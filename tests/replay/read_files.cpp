@@ -25,6 +25,8 @@ Folder::~Folder() {
 }
 
 std::string Folder::write(std::string_view name, std::string_view text) const {
+  // Some file systems put a file that is written anew on the disk at once, but not one that was not there before.
+  std::filesystem::remove(path(name));
   std::ofstream(path(name), std::ios::binary) << text;
   return path(name);
 }
