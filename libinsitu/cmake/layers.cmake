@@ -44,7 +44,7 @@ set(layer_may_include_kernels "")
 set(layer_only_renderer_image libinsitu/image/framebuffer.h)
 
 # Third-party headers: a name, the headers, the files that may include them. A header that no line names is refused.
-set(third_party_names Embree OpenImageIO Highway nlohmann-json yaml-cpp GLM oneTBB CLI11 gemmi zlib)
+set(third_party_names Embree OpenImageIO Highway nlohmann-json yaml-cpp GLM oneTBB CLI11 gemmi HDF5 zlib)
 set(third_party_headers_Embree "^embree3/")
 set(third_party_files_Embree "^libinsitu/scene/embree_bridge\\.")
 set(third_party_headers_OpenImageIO "^OpenImageIO/")
@@ -63,6 +63,8 @@ set(third_party_headers_CLI11 "^CLI/")
 set(third_party_files_CLI11 "^mini-apps/")
 set(third_party_headers_gemmi "^gemmi/")
 set(third_party_files_gemmi "^mini-apps/")
+set(third_party_headers_HDF5 "^hdf5\\.h$")
+set(third_party_files_HDF5 "^mini-apps/replay/hdf5_file\\.cpp$")
 set(third_party_headers_zlib "^zlib\\.h$")
 set(third_party_files_zlib "^mini-apps/")
 

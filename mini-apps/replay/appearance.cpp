@@ -36,17 +36,18 @@ std::string fitting_colormap(const Attribute& attribute) {
 
 RadiusChoice vdw_radii(const Attribute& element) {
   RadiusChoice choice;
-  choice.per_particle.reserve(element.values.size());
-  for (const double z : element.values) {
-    choice.per_particle.push_back(static_cast<float>(vdw_radius(atomic_number_of(z))));
-  }
+  choice.per_particle.resize(element.size());
+  for_each_value(element.scalars, [&choice](std::size_t i, double z) {
+    choice.per_particle[i] = z < 0.0 ? 0.0f : static_cast<float>(vdw_radius(atomic_number_of(z)));
+  });
   return choice;
 }
 
 RadiusChoice radii_of(const Attribute& attribute) {
   RadiusChoice choice;
-  choice.per_particle.reserve(attribute.values.size());
-  for (const double r : attribute.values) choice.per_particle.push_back(static_cast<float>(r));
+  choice.per_particle.resize(attribute.size());
+  for_each_value(attribute.scalars,
+                 [&choice](std::size_t i, double r) { choice.per_particle[i] = static_cast<float>(r); });
   return choice;
 }
 
@@ -83,7 +84,7 @@ RadiusChoice choose_radius(const Frame& frame, const Options& options) {
   const Attribute* const element = frame.find("element");
   if (wish.empty()) {
     if (const Attribute* radius = frame.find("radius")) return radii_of(*radius);
-    return element ? vdw_radii(*element) : RadiusChoice();
+    return element ? vdw_radii(*element) : RadiusChoice{{}, frame.radius_for_all};
   }
   RadiusChoice choice;
   if (wish == "auto") return choice;

@@ -138,20 +138,20 @@ void ColumnReader::read_row(const Words& words, const LineReader& lines, Frame& 
         position[column.component] = number_of(column, text, lines);
         break;
       case Column::Kind::number:
-        frame.attributes[target_[i]].values.push_back(number_of(column, text, lines));
+        frame.attributes[target_[i]].values().push_back(number_of(column, text, lines));
         break;
       case Column::Kind::element:
-        frame.attributes[target_[i]].values.push_back(element_of(text));
+        frame.attributes[target_[i]].values().push_back(element_of(text));
         break;
       case Column::Kind::category:
-        frame.attributes[target_[i]].values.push_back(category(i, text));
+        frame.attributes[target_[i]].values().push_back(category(i, text));
         break;
       case Column::Kind::species:
-        frame.attributes[target_[i]].values.push_back(element_of(text));
-        frame.attributes[type_target_].values.push_back(category(i, text));
+        frame.attributes[target_[i]].values().push_back(element_of(text));
+        frame.attributes[type_target_].values().push_back(category(i, text));
         break;
       case Column::Kind::truth:
-        frame.attributes[target_[i]].values.push_back(truth_of(column, text, lines));
+        frame.attributes[target_[i]].values().push_back(truth_of(column, text, lines));
         break;
     }
   }

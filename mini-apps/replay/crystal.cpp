@@ -96,9 +96,9 @@ Frame crystal_frame(gemmi::cif::Block& block) {
     for (const gemmi::Fractional& image : images_of(at, cell, operations)) {
       const gemmi::Position position = cell.orthogonalize(image);
       frame.position.insert(frame.position.end(), {position.x, position.y, position.z});
-      element.values.push_back(element_of_symbol(as_string(row[row.has2(symbol) ? symbol : label])));
-      site.values.push_back(number);
-      occupancy.values.push_back(row.has2(occupied) ? as_number(row[occupied]) : 1.0);
+      element.values().push_back(element_of_symbol(as_string(row[row.has2(symbol) ? symbol : label])));
+      site.values().push_back(number);
+      occupancy.values().push_back(row.has2(occupied) ? as_number(row[occupied]) : 1.0);
     }
   }
   frame.attributes = {std::move(element), std::move(site), std::move(occupancy)};

@@ -181,7 +181,7 @@ class DataReader : public FrameReader {
   std::size_t particle_of_id(const Frame& frame, const char* section) {
     if (!atoms_read_) lines_.fail(std::string("\"") + section + "\" before \"Atoms\"");
     if (place_of_id_.empty()) {
-      const std::vector<double>& ids = frame.find("id")->values;
+      const std::vector<double>& ids = frame.find("id")->values();
       for (std::size_t i = 0; i < ids.size(); ++i) place_of_id_[ids[i]] = i;
     }
     std::int64_t id = 0;
@@ -197,7 +197,7 @@ class DataReader : public FrameReader {
       next_row("Velocities", i, header_.atoms);
       check_columns(4, "an id and three components");
       const std::size_t particle = particle_of_id(frame, "Velocities");
-      for (std::size_t c = 0; c < 3; ++c) velocity.values[3 * particle + c] = number_in(lines_, row_[c + 1]);
+      for (std::size_t c = 0; c < 3; ++c) velocity.values()[3 * particle + c] = number_in(lines_, row_[c + 1]);
     }
     frame.remove("velocity");
     frame.attributes.push_back(std::move(velocity));
@@ -212,7 +212,7 @@ class DataReader : public FrameReader {
       const std::size_t particle = particle_of_id(frame, "Ellipsoids");
       double volume = 1.0;
       for (std::size_t c = 0; c < 3; ++c) volume *= number_in(lines_, row_[c + 1]);
-      radius.values[particle] = std::cbrt(volume) / 2;
+      radius.values()[particle] = std::cbrt(volume) / 2;
     }
     frame.remove("radius");
     frame.attributes.push_back(std::move(radius));
@@ -228,8 +228,8 @@ class DataReader : public FrameReader {
     Attribute* const element = frame.find("element");
     const Attribute* const spin = style_.name == "electron" ? frame.find("spin") : nullptr;
     if (!element || !spin) return;
-    for (std::size_t i = 0; i < spin->values.size(); ++i) {
-      if (std::abs(spin->values[i]) == 1.0) element->values[i] = 0.0;
+    for (std::size_t i = 0; i < spin->values().size(); ++i) {
+      if (std::abs(spin->values()[i]) == 1.0) element->values()[i] = 0.0;
     }
   }
 

@@ -4,10 +4,10 @@
 
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <utility>
 
 #include "input_error.h"
+#include "input_file.h"
 #include "numbers.h"
 
 namespace replay {
@@ -17,17 +17,6 @@ constexpr std::size_t buffer_bytes = std::size_t{1} << 17;
 // No format here has lines of that length: a binary file without line ends must not fill the memory.
 constexpr std::size_t longest_line = std::size_t{1} << 20;
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-
-std::string reason_not_to_open(const std::string& path) {
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (status.type() == std::filesystem::file_type::not_found) return "there is no such file";
-  if (error) return "cannot be opened: " + error.message();
-  if (std::filesystem::is_directory(status)) return "is a folder, expected a file";
-  if (!std::filesystem::is_regular_file(status)) return "is not a regular file";
-  if (std::filesystem::file_size(path, error) == 0) return "is empty";
-  return {};
-}
 
 }  // namespace
 

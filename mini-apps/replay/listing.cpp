@@ -29,6 +29,11 @@ struct Range {
     lower = std::min(lower, value);
     upper = std::max(upper, value);
   }
+  void add(const Range& other) {
+    lower = std::min(lower, other.lower);
+    upper = std::max(upper, other.upper);
+    not_finite += other.not_finite;
+  }
 };
 
 std::string number_text(double value) {
@@ -73,14 +78,15 @@ struct Summary {
 
  private:
   void add(const Attribute& attribute) {
+    Range range[4];
+    for_each_value(attribute.scalars, [&](std::size_t i, double value) { range[i % attribute.components].add(value); });
     for (std::uint32_t c = 0; c < attribute.components; ++c) {
       std::string name = attribute.name;
       if (attribute.components > 1) name.append(".").append(1, "xyzw"[c]);
-      Range& range = range_of(name);
-      for (std::size_t i = c; i < attribute.values.size(); i += attribute.components) range.add(attribute.values[i]);
+      range_of(name).add(range[c]);
     }
     if (attribute.name != "element") return;
-    for (const double z : attribute.values) elements.insert(atomic_number_of(z));
+    for_each_value(attribute.scalars, [this](std::size_t, double z) { elements.insert(atomic_number_of(z)); });
   }
   Range& range_of(const std::string& name) {
     for (auto& [known, range] : attributes) {
@@ -144,6 +150,7 @@ std::uint64_t print_listing(std::ostream& out, const std::string& path, const Op
   }
   out << path << ": " << format_title(format);
   if (!reader->remark().empty()) out << ", " << reader->remark();
+  for (const std::string& trajectory : read.trajectories) out << "\n  moved by    " << trajectory;
   out << "\n  steps       " << summary.frames;
   if (summary.first_number) out << ", numbered " << span_text(*summary.first_number, *summary.last_number);
   out << '\n';

@@ -28,7 +28,7 @@ class Collector {
                              chain,
                              residue.seqid.num.has_value() ? static_cast<double>(residue.seqid.num.value) : 0.0,
                              residue.het_flag == 'H' ? 1.0 : 0.0};
-    for (std::size_t i = 0; i < std::size(values); ++i) frame_.attributes[i].values.push_back(values[i]);
+    for (std::size_t i = 0; i < std::size(values); ++i) frame_.attributes[i].values().push_back(values[i]);
   }
 
  private:

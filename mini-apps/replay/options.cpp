@@ -29,11 +29,10 @@ struct Texts {
   bool no_hetatm = false;
 };
 
-const std::map<std::string, Format> format_names = {{"data", Format::lammps_data},
-                                                    {"dump", Format::lammps_dump},
-                                                    {"xyz", Format::xyz},
-                                                    {"pdb", Format::pdb},
-                                                    {"cif", Format::cif}};
+const std::map<std::string, Format> format_names = {
+    {"data", Format::lammps_data}, {"dump", Format::lammps_dump}, {"xyz", Format::xyz}, {"pdb", Format::pdb},
+    {"cif", Format::cif},          {"gro", Format::gro},          {"dcd", Format::dcd}, {"gadget", Format::gadget},
+    {"hdf5", Format::hdf5},        {"tipsy", Format::tipsy}};
 const std::map<std::string, std::uint32_t> order_names = {
     {"index", INSITU_ORDER_INDEX}, {"permute", INSITU_ORDER_PERMUTE}, {"copy", INSITU_ORDER_COPY}};
 
@@ -67,8 +66,16 @@ void add_reading(CLI::App& app, Options& options, Texts& texts) {
   const char* const group = "Reading";
   app.add_option("FILE", options.files,
                  wrapped("Files to play, one after the other: LAMMPS data and text dump, XYZ and extended XYZ, PDB, "
-                         "mmCIF and CIF of crystals, each also as .gz"))
+                         "mmCIF and CIF of crystals, GRO, DCD, and snapshots of Gadget (binary and HDF5) and TIPSY, "
+                         "each also as .gz"))
       ->required();
+  app.add_option(
+         "--trajectory", options.read.trajectories,
+         wrapped("Positions, step by step, for the particles of FILE, such as those of a DCD file; may be given "
+                 "more than once"))
+      ->type_name("FILE")
+      ->allow_extra_args(false)
+      ->group(group);
   app.add_option("--format", texts.format, wrapped("What the files are, when neither content nor ending tells"))
       ->type_name("FORMAT")
       ->check(one_of(format_names))
@@ -109,7 +116,7 @@ void add_looks(CLI::App& app, Options& options, Texts& texts) {
       ->group(group);
   app.add_option("--radius", options.radius,
                  wrapped("A length, vdw (by element), auto (by the spacing), or the attribute to take; by default the "
-                         "file's radius, else vdw, else auto"))
+                         "file's radius, else vdw, else by the spacing (docs/replay.md)"))
       ->type_name("R")
       ->group(group);
   app.add_option("--radius-scale", options.radius_scale, wrapped("Factor on every radius"))
@@ -195,6 +202,9 @@ void convert(const Texts& texts, Options& options) {
   if (!options.read.atom_style.empty() && atom_style_named(options.read.atom_style).columns.empty()) {
     throw UsageError("--atom-style " + options.read.atom_style + ": expected one of " + atom_style_names());
   }
+  if (!options.read.trajectories.empty() && options.files.size() != 1) {
+    throw UsageError("--trajectory: expected one FILE, whose particles it moves");
+  }
   options.order = order_names.at(texts.order);
   options.read.hetatm = !texts.no_hetatm;
   check_image_pattern(options.out);
@@ -208,6 +218,8 @@ std::optional<Options> parse_options(int argc, char** argv) {
       "Examples:\n"
       "  insitu-replay --ao 16 --shadows 4hhb.pdb.gz\n"
       "  insitu-replay --color speed --range 0 3 --view iso --out melt_{step:6}.png dump.lammpstrj\n"
+      "  insitu-replay --trajectory run.dcd --ao 8 protein.pdb\n"
+      "  insitu-replay --color density snapshot_012.0.hdf5\n"
       "  insitu-replay --turntable 36 --out spin_{angle:3}.png protein.cif\n"
       "Exit codes: 0 done, 1 the library failed, 2 a file or the command line is wrong.");
   app.get_formatter()->column_width(28);

@@ -4,6 +4,8 @@
 #include <exception>
 #include <new>
 
+#include "atom_names.h"
+#include "hybrid36.h"
 #include "input_error.h"
 #include "line_reader.h"
 #include "model_frame.h"
@@ -20,6 +22,8 @@ class PdbReader : public FrameReader {
   bool next(Frame& frame) override {
     frame = Frame();
     text_ = cell_record_;
+    ids_.clear();
+    elements_.clear();
     bool atoms = false;
     while (lines_.next()) {
       const std::string_view line = lines_.line();
@@ -36,6 +40,8 @@ class PdbReader : public FrameReader {
         check_coordinates();
         atoms = true;
         keep_line();
+        name_element();
+        number_atom();
       } else if (record == "TER") {
         keep_line();
       } else if (record == "CRYST1") {
@@ -50,6 +56,7 @@ class PdbReader : public FrameReader {
     ++frames_;
     const gemmi::Structure structure = parse();
     frame_from_model(structure.models[0], hetatm_, frame);
+    restore_order(frame);
     frame.box = box_from_cell(structure.cell);
     derive_attributes(frame);
     return true;
@@ -61,6 +68,38 @@ class PdbReader : public FrameReader {
     constexpr std::size_t columns_needed = 78;
     text_.append(lines_.line().substr(0, columns_needed));
     text_ += '\n';
+  }
+
+  // Where the columns of the element are blank gemmi goes by the column in which the name begins, but many programs
+  // write all names from the left: C-alpha would be calcium.
+  void name_element() {
+    constexpr std::size_t element_column = 76;
+    const std::string_view line = lines_.line();
+    const bool is_named = line.size() > element_column && !trimmed(line.substr(element_column, 2)).empty();
+    elements_.push_back(is_named
+                            ? std::nullopt
+                            : std::optional(element_of_atom(trimmed(line.substr(12, 4)), trimmed(line.substr(17, 3)))));
+  }
+
+  // gemmi collects the atoms of a residue, and where a long file begins to count its residues anew that moves atoms.
+  // The order matters when positions come from a trajectory; so atoms are numbered by their place in the file.
+  void number_atom() {
+    constexpr std::size_t id_column = 6;
+    const std::size_t line_begin = text_.rfind('\n', text_.size() - 2) + 1;
+    const std::string place = hybrid36(ids_.size());
+    const std::string_view id = std::string_view(text_).substr(line_begin + id_column, place.size());
+    ids_.push_back(static_cast<double>(parse_hybrid36(id).value_or(0)));
+    text_.replace(line_begin + id_column, place.size(), place);
+  }
+  void restore_order(Frame& frame) const {
+    sort_by(frame, "id");
+    std::vector<double>& ids = frame.find("id")->values();
+    std::vector<double>& elements = frame.find("element")->values();
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      const auto place = static_cast<std::size_t>(ids[i]);
+      ids[i] = ids_[place];
+      if (elements_[place]) elements[i] = *elements_[place];
+    }
   }
 
   std::optional<std::uint64_t> model_number() const {
@@ -103,6 +142,9 @@ class PdbReader : public FrameReader {
   std::uint64_t frames_ = 0;
   std::string cell_record_;  // stands before the first model and holds for all
   std::string text_;
+  // Of the atoms of the model, in the order of the file.
+  std::vector<double> ids_;
+  std::vector<std::optional<int>> elements_;  // where the columns for it are blank
 };
 
 }  // namespace

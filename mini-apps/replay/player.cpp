@@ -16,6 +16,13 @@ void print_message(void*, std::int32_t level, const char* text) {
 // 0 for what is no type.
 std::int32_t type_of(double value) { return value >= 0.0 && value < 2e9 ? static_cast<std::int32_t>(value) : 0; }
 
+constexpr std::uint32_t scalar_type(const std::vector<double>&) { return INSITU_F64; }
+constexpr std::uint32_t scalar_type(const std::vector<float>&) { return INSITU_F32; }
+constexpr std::uint32_t scalar_type(const std::vector<std::int32_t>&) { return INSITU_I32; }
+constexpr std::uint32_t scalar_type(const std::vector<std::uint32_t>&) { return INSITU_U32; }
+constexpr std::uint32_t scalar_type(const std::vector<std::int64_t>&) { return INSITU_I64; }
+constexpr std::uint32_t scalar_type(const std::vector<std::uint64_t>&) { return INSITU_U64; }
+
 void copy(const std::array<double, 3>& from, double to[3]) { std::copy(from.begin(), from.end(), to); }
 
 }  // namespace
@@ -116,13 +123,15 @@ void Player::update(Frame& frame, Arrays& arrays) {
   arrays.values.reserve(frame.attributes.size());
   for (const Attribute& attribute : frame.attributes) {
     if (attribute.name == "type") {
-      arrays.type.resize(attribute.values.size());
-      std::transform(attribute.values.begin(), attribute.values.end(), arrays.type.begin(), type_of);
+      arrays.type.resize(attribute.size());
+      for_each_value(attribute.scalars, [&](std::size_t i, double value) { arrays.type[i] = type_of(value); });
       arrays.type_array = records(INSITU_I32, 1, arrays.type.data());
       desc.type = &arrays.type_array;
       continue;
     }
-    arrays.values.push_back(records(INSITU_F64, attribute.components, attribute.values.data()));
+    arrays.values.push_back(std::visit(
+        [&](const auto& values) { return records(scalar_type(values), attribute.components, values.data()); },
+        attribute.scalars));
     arrays.attributes.push_back({attribute.name.c_str(), &arrays.values.back()});
   }
   desc.attributes = arrays.attributes.data();

@@ -120,11 +120,11 @@ class Appearance : public ::testing::Test {
  protected:
   Appearance() {
     frame_.position = {0, 0, 0, 1, 0, 0};
-    frame_.add("q").values = {-1, 1};
-    frame_.add("velocity", 3).values = {1, 2, 3, 4, 5, 6};
+    frame_.add("q").values() = {-1, 1};
+    frame_.add("velocity", 3).values() = {1, 2, 3, 4, 5, 6};
   }
-  void add_element() { frame_.add("element", 1, true).values = {1, 8}; }
-  void add_type() { frame_.add("type", 1, true).values = {1, 2}; }
+  void add_element() { frame_.add("element", 1, true).values() = {1, 8}; }
+  void add_type() { frame_.add("type", 1, true).values() = {1, 2}; }
 
   Frame frame_;
   Options options_;
@@ -171,7 +171,7 @@ TEST_F(Appearance, RadiiComeFromTheFileThenFromTheElement) {
   EXPECT_EQ(choose_radius(frame_, options_).for_all, 0);
   add_element();
   EXPECT_THAT(choose_radius(frame_, options_).per_particle, ElementsAre(1.2f, 1.52f));
-  frame_.add("radius").values = {5, 6};
+  frame_.add("radius").values() = {5, 6};
   EXPECT_THAT(choose_radius(frame_, options_).per_particle, ElementsAre(5, 6));
   options_.radius = "vdw";
   EXPECT_THAT(choose_radius(frame_, options_).per_particle, ElementsAre(1.2f, 1.52f));
@@ -193,9 +193,9 @@ TEST_F(Appearance, NothingIsExpectedOfAFrameWithoutParticles) {
 TEST(Frame, TypesMayBeGivenElements) {
   Frame frame;
   frame.position.resize(9);
-  frame.add("type").values = {2, 1, 7};
+  frame.add("type").values() = {2, 1, 7};
   assign_elements(frame, {8, 1});
-  EXPECT_THAT(frame.find("element")->values, ElementsAre(1, 8, 0));
+  EXPECT_THAT(frame.find("element")->values(), ElementsAre(1, 8, 0));
 }
 
 }  // namespace

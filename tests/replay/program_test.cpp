@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "read_files.h"
+#include "sample_files.h"
 
 namespace replay::test {
 namespace {
@@ -103,6 +104,26 @@ TEST_F(Program, TurnsAroundTheData) {
   EXPECT_FALSE(read_file(folder_.path("turn_000.png")) == read_file(folder_.path("turn_090.png")));
 }
 
+TEST_F(Program, DrawsSnapshotsAndTrajectories) {
+  folder_.write("snap", gadget_sample({}));
+  folder_.write("run.dcd", dcd_sample({}));
+  folder_.write("four.xyz", "4\n\nO 0 0 0\nH 1 0 0\nH 0 1 0\nC 0 0 1\n");
+  for (const char* color : {"density", "id", "velocity.y", "type", "mass"}) {
+    const Outcome result = run(std::string("snap --order permute --out snap.png --color ") + color);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.out, StartsWith("snap.png  5 particles, 0 skipped, "));
+  }
+  EXPECT_EQ(run("four.xyz --trajectory run.dcd --trajectory run.dcd --out t_{step}.png").exit_code, 0);
+  for (const char* name : {"t_10.png", "t_15.png", "t_20.png", "t_21.png", "t_23.png"})
+    EXPECT_TRUE(exists(name)) << name;
+  const Outcome listing = run("--list --trajectory run.dcd four.xyz");
+  EXPECT_THAT(listing.out, AllOf(HasSubstr("moved by    run.dcd"), HasSubstr("steps       3, numbered 10 to 20"),
+                                 HasSubstr("element          1 to 8 (H C O)")));
+  const Outcome wrong = run("water.xyz --trajectory run.dcd");
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_EQ(wrong.err, "run.dcd: has 4 particles in a step, expected 3 as \"water.xyz\" has\n");
+}
+
 TEST_F(Program, TakesEveryOption) {
   for (const char* options :
        {"--color q --colormap coolwarm --range -1 1", "--color '#4080c0' --background '#202020'",
@@ -189,7 +210,8 @@ TEST_F(Program, WrongOptionsExitWithTwo) {
       {"water.xyz --color speed", "expected one of element, type"},
       {"water.xyz --radius size", "expected one of element, type"},
       {"water.xyz --colormap rainbow", "viridis"},
-      {"water.xyz --format gro", "xyz"},
+      {"water.xyz --format doc", "xyz"},
+      {"water.xyz water.xyz --trajectory steps.dump", "--trajectory: expected one FILE"},
       {"water.xyz --order random", "permute"},
       {"water.xyz --range 2 1", "the smaller one first"},
       {"water.xyz --size big", "expected WIDTHxHEIGHT"},

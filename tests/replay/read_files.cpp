@@ -25,6 +25,8 @@ Folder::~Folder() {
 }
 
 std::string Folder::write(std::string_view name, std::string_view text) const {
+  // Some file systems put a file that is written anew on the disk at once, but not one that was not there before.
+  std::filesystem::remove(path(name));
   std::ofstream(path(name), std::ios::binary) << text;
   return path(name);
 }
@@ -42,7 +44,7 @@ std::vector<Frame> read_all(const std::string& path, const ReadOptions& options)
   Frame frame;
   while (reader->next(frame)) {
     for (const Attribute& attribute : frame.attributes) {
-      EXPECT_EQ(attribute.values.size(), attribute.components * frame.count()) << attribute.name;
+      EXPECT_EQ(attribute.size(), attribute.components * frame.count()) << attribute.name;
     }
     frames.push_back(frame);
   }
@@ -67,7 +69,9 @@ std::vector<double> values(const Frame& frame, std::string_view name) {
     ADD_FAILURE() << "no attribute " << name << ", but " << frame.attribute_names();
     return {};
   }
-  return attribute->values;
+  std::vector<double> all(attribute->size());
+  for_each_value(attribute->scalars, [&all](std::size_t i, double value) { all[i] = value; });
+  return all;
 }
 
 }  // namespace replay::test

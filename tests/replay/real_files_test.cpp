@@ -28,7 +28,7 @@ class RealFiles : public ::testing::Test {
       ++frames;
       EXPECT_EQ(frame.count(), count) << name << ", frame " << frames;
       EXPECT_TRUE(std::all_of(frame.position.begin(), frame.position.end(), [](double x) { return std::isfinite(x); }));
-      for (const Attribute& a : frame.attributes) EXPECT_EQ(a.values.size(), a.components * count) << name << a.name;
+      for (const Attribute& a : frame.attributes) EXPECT_EQ(a.size(), a.components * count) << name << a.name;
     }
     return frames;
   }

@@ -2,9 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <fstream>
+#include <iterator>
 
 #include "input_error.h"
 #include "read_files.h"
+#include "sample_files.h"
 
 namespace replay::test {
 namespace {
@@ -47,6 +50,11 @@ const std::array<Sample, 6> samples = {{
      "2\n"
      "data_Y\n"},
 }};
+
+const char* const gro =
+    "Water t= 1.0 step= 5\n    2\n    1SOL     OW    1   0.126   1.624   1.679  0.1227 -0.0580  0.0434\n"
+    "    1SOL    HW1    2   0.190   1.661   1.747  0.8085  0.3191 -0.7791\n   1.8   1.8   1.8\n"
+    "t= 2.0\n    1\n    1LYS    1HB    1   1.00000   2.00000  -3.12345\n   3 4 5 0 0 1 0 1 2\n";
 
 const char* const crystal =
     "data_X\n_cell_length_a 5\n_cell_length_b 5\n_cell_length_c 5\n_cell_angle_alpha 90\n_cell_angle_beta 90\n"
@@ -103,12 +111,77 @@ TEST(Robustness, FilesCutOffAnywhere) {
   Folder folder;
   for (const Sample& sample : samples) cut_everywhere(folder, sample.name, sample.format, sample.text);
   cut_everywhere(folder, "crystal", Format::cif, crystal);
+  cut_everywhere(folder, "gro", Format::gro, gro);
 }
 
 TEST(Robustness, FilesWithWrongCharacters) {
   Folder folder;
   for (const Sample& sample : samples) change_everywhere(folder, sample.name, sample.format, sample.text);
   change_everywhere(folder, "crystal", Format::cif, crystal);
+  change_everywhere(folder, "gro", Format::gro, gro);
+}
+
+struct BinarySample {
+  const char* name;
+  Format format;
+  std::string content;
+  int whole_beginnings;  // lengths, less than all, at which what is there is a file in itself
+};
+
+std::vector<BinarySample> binary_samples() {
+  return {
+      // Behind the masses nothing has to follow: the end may stand after MASS, U and RHO.
+      {"gadget 1", Format::gadget, gadget_sample({}), 3},
+      {"gadget 2, big-endian, doubles", Format::gadget, gadget_sample({std::endian::big, true, true}), 3},
+      {"tipsy", Format::tipsy, tipsy_sample({}), 0},
+      {"tipsy, native", Format::tipsy, tipsy_sample({std::endian::little, false}), 0},
+      // Steps one by one.
+      {"dcd", Format::dcd, dcd_sample({}), 2},
+      {"dcd, big-endian, fixed atoms", Format::dcd, dcd_sample({std::endian::big, true, true, true, true, 1}), 2},
+  };
+}
+
+TEST(Robustness, BinaryFilesCutOffAnywhere) {
+  Folder folder;
+  for (const BinarySample& sample : binary_samples()) {
+    EXPECT_TRUE(reads(folder.write("file", sample.content), sample.format)) << sample.name;
+    int whole = 0;
+    for (std::size_t length = 1; length < sample.content.size(); ++length) {
+      const std::string path = folder.write("file", std::string_view(sample.content).substr(0, length));
+      ASSERT_NO_THROW(whole += reads(path, sample.format)) << sample.name << " cut at " << length;
+    }
+    EXPECT_EQ(whole, sample.whole_beginnings) << sample.name;
+  }
+}
+
+TEST(Robustness, CompressedBinaryFilesCutOffAnywhere) {
+  Folder folder;
+  for (const BinarySample& sample : binary_samples()) {
+    std::ifstream in(folder.write_gz("whole", sample.content), std::ios::binary);
+    const std::string packed{std::istreambuf_iterator<char>(in), {}};
+    int whole = 0;
+    // The first two bytes are the mark of gzip, the last eight a check sum and the length.
+    for (std::size_t length = 1; length + 8 < packed.size(); ++length) {
+      const std::string path = folder.write("file", std::string_view(packed).substr(0, length));
+      ASSERT_NO_THROW(whole += reads(path, sample.format)) << sample.name << " cut at " << length;
+    }
+    EXPECT_LE(whole, sample.whole_beginnings) << sample.name;
+  }
+}
+
+TEST(Robustness, BinaryFilesWithWrongBytes) {
+  Folder folder;
+  for (const BinarySample& sample : binary_samples()) {
+    for (std::uint32_t seed = 0; seed < 200; ++seed) {
+      Random random(seed);
+      std::string damaged = sample.content;
+      for (std::uint32_t i = 0; i <= seed % 3; ++i) {
+        constexpr std::string_view bytes("\0\1\x7F\x80\xFF\x0C\x54\x08", 8);
+        damaged[random.below(damaged.size())] = bytes[random.below(bytes.size())];
+      }
+      ASSERT_NO_THROW(reads(folder.write("file", damaged), sample.format)) << sample.name << ", seed " << seed;
+    }
+  }
 }
 
 TEST(Robustness, FilesReadAsAnotherFormat) {
