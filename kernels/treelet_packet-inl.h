@@ -329,15 +329,20 @@ class TreeletPackets {
       const V t_high = hn::Load(d, packet.lanes.t_high + i);
       const V t_low = hn::Load(d, packet.lanes.t_low + i);
       const V s = hn::Sqrt(hn::Max(hn::Sub(r2, distance2), hn::Zero(d)));
-      const V earliest = hn::Sub(b, s);
+      const V enter = hn::Sub(b, s);
       const auto candidate = hn::And(hn::And(close, packet.LanesOf(active, i)),
-                                     hn::And(hn::Le(earliest, t_high), hn::Ge(hn::Add(b, s), t_low)));
+                                     hn::And(hn::Le(enter, t_high), hn::Ge(hn::Add(b, s), t_low)));
       if (hn::AllFalse(d, candidate)) continue;
-      const V latest = hn::Sub(b, hn::Sqrt(hn::Max(hn::Sub(inner2, distance2), hn::Zero(d))));
-      const auto certain =
-          hn::And(hn::And(hn::Le(distance2, inner2), hn::Gt(earliest, hn::Load(d, packet.t_certain + i))),
-                  hn::Lt(latest, hn::Load(d, packet.best_earliest + i)));
-      const auto wins = hn::And(candidate, certain);
+      // A ray that starts within the sphere, shrunk as well as grown, leaves it instead.
+      const V inner_s = hn::Sqrt(hn::Max(hn::Sub(inner2, distance2), hn::Zero(d)));
+      const auto is_certain = hn::Le(distance2, inner2);
+      const auto is_inside = hn::And(is_certain, hn::Le(hn::Sub(b, inner_s), t_low));
+      const V earliest = hn::IfThenElse(is_inside, hn::Add(b, inner_s), enter);
+      const V latest = hn::IfThenElse(is_inside, hn::Add(b, s), hn::Sub(b, inner_s));
+      const auto possible = hn::And(candidate, hn::Le(earliest, t_high));
+      const auto certain = hn::And(hn::And(is_certain, hn::Gt(earliest, hn::Load(d, packet.t_certain + i))),
+                                   hn::Lt(latest, hn::Load(d, packet.best_earliest + i)));
+      const auto wins = hn::And(possible, certain);
       hn::BlendedStore(latest, wins, d, packet.lanes.t_high + i);
       hn::BlendedStore(earliest, wins, d, packet.best_earliest + i);
       hn::BlendedStore(hn::Set(u, static_cast<std::uint32_t>(place)), hn::RebindMask(u, wins), u,
@@ -345,7 +350,7 @@ class TreeletPackets {
       const std::uint32_t noted = MaskBits(d, wins) << i;
       packet.noted |= noted;
       nearer = true;
-      for (std::uint32_t open = MaskBits(d, candidate) << i & ~noted; open != 0; open &= open - 1) {
+      for (std::uint32_t open = MaskBits(d, possible) << i & ~noted; open != 0; open &= open - 1) {
         const std::size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(open);
         ConfirmNoted(packet, lane);
         Confirm(packet, lane, place);
