@@ -116,66 +116,8 @@ HWY_INLINE void Stage(const Positions& positions, std::uint64_t begin, std::size
   }
 }
 
-// The centres of a leaf in the coordinates of the tree, vector by vector: straight from the arrays where the layout
-// allows it, staged otherwise. Nothing behind the leaf is read: a vector that would end there starts earlier instead.
-template <class Positions>
-class LeafCentres {
- public:
-  HWY_INLINE LeafCentres(const Positions& positions, std::uint64_t begin, std::size_t count)
-      : positions_(positions), begin_(begin), count_(count), direct_(Direct()) {
-    if (direct_) return;
-    for (std::size_t i = 0; i < count; ++i) {
-      float centre[3];
-      positions.centre_f32(begin + i, centre);
-      leaf_.x[i] = centre[0];
-      leaf_.y[i] = centre[1];
-      leaf_.z[i] = centre[2];
-    }
-  }
-
-  // Where the vector begins that holds particle `done` and, as far as there are as many, those that follow it.
-  template <class D>
-  HWY_INLINE std::size_t first_of(D d, std::size_t done) const {
-    return direct_ ? std::min(done, count_ - hn::Lanes(d)) : done;
-  }
-
-  template <class D, class V>
-  HWY_INLINE void load(D d, std::size_t first, V& x, V& y, V& z) const {
-    if constexpr (std::is_same_v<Positions, PlacedPositions<float>>) {
-      if (direct_ && positions_.packed_records()) {
-        hn::LoadInterleaved3(d, positions_.scalars(begin_ + first, 0), x, y, z);
-        return;
-      }
-      if (direct_) {
-        x = hn::LoadU(d, positions_.scalars(begin_ + first, 0));
-        y = hn::LoadU(d, positions_.scalars(begin_ + first, 1));
-        z = hn::LoadU(d, positions_.scalars(begin_ + first, 2));
-        return;
-      }
-    }
-    x = hn::Load(d, leaf_.x + first);
-    y = hn::Load(d, leaf_.y + first);
-    z = hn::Load(d, leaf_.z + first);
-  }
-
- private:
-  HWY_INLINE bool Direct() const {
-    if constexpr (std::is_same_v<Positions, PlacedPositions<float>>)
-      return (positions_.packed_records() || positions_.packed_columns()) &&
-             count_ >= hn::Lanes(hn::CappedTag<float, pkd_leaf_size>());
-    return false;
-  }
-
-  const Positions& positions_;
-  std::uint64_t begin_;
-  std::size_t count_;
-  bool direct_;
-  StagedLeaf leaf_;
-};
-
-// Tests the particles at places [begin, end), at most pkd_leaf_size. True: the visitor needs no more.
-// exact_head: head is q itself, without a tail.
-template <bool exact_head, class Positions, class Visitor>
+// Calls visitor.visit() for the particles that the ray may hit. True: the visitor needs no more.
+template <class Positions, class Visitor>
 HWY_INLINE bool VisitLeaf(const PkdTree& tree, const Positions& positions, std::uint64_t begin, std::uint64_t end,
                           const RayFrame& frame, const Ray& ray, Visitor& visitor) {
   const hn::CappedTag<float, pkd_leaf_size> d;
@@ -241,11 +183,9 @@ HWY_INLINE bool VisitLeaf(const PkdTree& tree, const Positions& positions, std::
         x = hn::Sub(x, hx);
         y = hn::Sub(y, hy);
         z = hn::Sub(z, hz);
-        if constexpr (!exact_head) {
-          x = hn::Sub(x, hn::Set(d, frame.tail[0]));
-          y = hn::Sub(y, hn::Set(d, frame.tail[1]));
-          z = hn::Sub(z, hn::Set(d, frame.tail[2]));
-        }
+        x = hn::Sub(x, hn::Set(d, frame.tail[0]));
+        y = hn::Sub(y, hn::Set(d, frame.tail[1]));
+        z = hn::Sub(z, hn::Set(d, frame.tail[2]));
         if (visit(x, y, z, first, lanes)) return true;
       }
       return false;

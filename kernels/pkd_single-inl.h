@@ -36,7 +36,6 @@ struct SlabRay {
 class LeafFrames {
  public:
   using Real = double;
-  static constexpr bool exact_head = false;
 
   explicit LeafFrames(const Ray& ray) : ray_(ray) {}
   template <class Key>
@@ -51,23 +50,6 @@ class LeafFrames {
   const Ray& ray_;
 };
 
-// In f32, with one frame for the whole tree: for trees whose radii are far above its margin (see RayPacket).
-class TreeFrame {
- public:
-  using Real = float;
-  static constexpr bool exact_head = true;
-
-  explicit TreeFrame(const RayFrame& frame) : frame_(frame) {}
-  template <class Key>
-  const RayFrame& frame(const PkdTree&, const Subtree<Key, Real>&) const {
-    return frame_;
-  }
-  float relative(double t) const { return static_cast<float>(t - frame_.t_shift + frame_.margin); }
-
- private:
-  const RayFrame& frame_;
-};
-
 // Tests the particles below the last split: a leaf, or any number of particles at one point.
 template <class Positions, class Frames, class Visitor>
 HWY_INLINE bool VisitRun(const PkdTree& tree, const Positions& positions, const Frames& frames,
@@ -78,9 +60,7 @@ HWY_INLINE bool VisitRun(const PkdTree& tree, const Positions& positions, const 
     return visitor.visit(tree, positions, run.begin, ray);  // equal spheres: the build puts the one to be shown first
   const RayFrame& frame = frames.frame(tree, run);
   for (std::uint64_t begin = run.begin; begin < run.end; begin += pkd_leaf_size)
-    if (VisitLeaf<Frames::exact_head>(tree, positions, begin, std::min(run.end, begin + pkd_leaf_size), frame, ray,
-                                      visitor))
-      return true;
+    if (VisitLeaf(tree, positions, begin, std::min(run.end, begin + pkd_leaf_size), frame, ray, visitor)) return true;
   return false;
 }
 

@@ -6,33 +6,38 @@
 // After foreach_target.h, as Highway asks.
 #include <hwy/highway.h>
 
-#include "kernels/pkd_packet-inl.h"
-#include "kernels/pkd_stream-inl.h"
+#include "kernels/pkd_nodes-inl.h"
+#include "kernels/tree_traverse-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace insitu::kernels::HWY_NAMESPACE {
+
+// Fewer rays than this go one by one.
+constexpr std::size_t fewest_together = 4;
+
+// Leaves of the walk: measured. The build is free to leave up to pkd_leaf_size particles in any order, so that what a
+// walk splits has to be larger.
+constexpr std::uint64_t longest_leaf = 64;
+static_assert(longest_leaf >= 2 * pkd_leaf_size);
+
+bool IsWalked(const PkdTree& tree, const TreeMargin& margin, std::size_t rays) {
+  return rays >= fewest_together && margin.fits && tree.count > pkd_leaf_size;
+}
 
 template <class Positions>
 void FirstHitsIn(const PkdTree& tree, const Ray* rays, Hit* hits, std::size_t count) {
   const Positions positions(tree);
   const TreeMargin margin(tree);
-  RayPacket packet;
-  for (std::size_t begin = 0; begin < count; begin += packet_size) {
-    const std::size_t n = std::min(packet_size, count - begin);
-    FirstHitVisitor visitors[packet_size];
-    double limits[packet_size];
-    for (std::size_t i = 0; i < n; ++i) {
-      visitors[i] = FirstHitVisitor(rays[begin + i], hits[begin + i]);
-      limits[i] = visitors[i].t_limit();
-    }
-    bool together = n >= fewest_together;
-    for (std::size_t i = 0; i < n; ++i) together = together && margin.Fits(rays[begin + i]);
-    if (together) {
-      packet.Load(tree, margin, rays + begin, n, limits);
-      PacketTraversal(tree, positions, rays + begin, packet, visitors).Run();
-    } else {
-      for (std::size_t i = 0; i < n; ++i) TraverseTree(tree, positions, rays[begin + i], visitors[i]);
-    }
+  if (IsWalked(tree, margin, count)) {
+    // When the first of equal spheres is excluded, which of the others is shown depends on all of them.
+    bool one_for_all = true;
+    for (std::size_t i = 0; i < count; ++i) one_for_all = one_for_all && rays[i].exclude == no_item;
+    const PkdNodes<Positions> nodes(tree, positions, margin, longest_leaf, one_for_all);
+    return FirstHitsOver(tree, positions, nodes, margin, rays, hits, count);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    FirstHitVisitor visitor(rays[i], hits[i]);
+    TraverseTree(tree, positions, rays[i], visitor);
   }
 }
 
@@ -40,11 +45,9 @@ template <class Positions>
 void AnyHitsIn(const PkdTree& tree, const Ray* rays, std::uint8_t* occluded, std::size_t count) {
   const Positions positions(tree);
   const TreeMargin margin(tree);
-  if (count >= fewest_together && margin.fits) {
-    const std::size_t longest = std::min(count, longest_stream);
-    AnyHitStream stream(tree, positions, margin, rays, occluded, longest);
-    for (std::size_t begin = 0; begin < count; begin += longest) stream.Run(begin, std::min(longest, count - begin));
-    return;
+  if (IsWalked(tree, margin, count)) {
+    const PkdNodes<Positions> nodes(tree, positions, margin, longest_leaf, true);
+    return AnyHitsOver(tree, positions, nodes, margin, rays, occluded, count);
   }
   for (std::size_t i = 0; i < count; ++i) {
     if (occluded[i] != 0) continue;

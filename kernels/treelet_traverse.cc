@@ -8,8 +8,8 @@
 // After foreach_target.h, as Highway asks.
 #include <hwy/highway.h>
 
-#include "kernels/treelet_packet-inl.h"
-#include "kernels/treelet_stream-inl.h"
+#include "kernels/tree_traverse-inl.h"
+#include "kernels/treelet_nodes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace insitu::kernels::HWY_NAMESPACE {
@@ -17,21 +17,13 @@ namespace insitu::kernels::HWY_NAMESPACE {
 template <class Positions>
 void TreeletFirstHitsIn(const PkdTree& tree, const Treelets& treelets, const TreeMargin& margin, const Ray* rays,
                         Hit* hits, std::size_t count) {
-  const Positions positions(tree);
-  const std::size_t longest = std::min(count, longest_packet_stream);
-  TreeletPacketStream<Positions> stream(tree, positions, treelets, margin, longest);
-  for (std::size_t begin = 0; begin < count; begin += longest)
-    stream.Run(rays + begin, hits + begin, std::min(longest, count - begin));
+  FirstHitsOver(tree, Positions(tree), TreeletNodes(tree, treelets), margin, rays, hits, count);
 }
 
 template <class Positions>
 void TreeletAnyHitsIn(const PkdTree& tree, const Treelets& treelets, const TreeMargin& margin, const Ray* rays,
                       std::uint8_t* occluded, std::size_t count) {
-  const Positions positions(tree);
-  const std::size_t longest = std::min(count, longest_treelet_stream);
-  TreeletStream<Positions> stream(tree, positions, treelets, margin, longest);
-  for (std::size_t begin = 0; begin < count; begin += longest)
-    stream.Run(rays + begin, occluded + begin, std::min(longest, count - begin));
+  AnyHitsOver(tree, Positions(tree), TreeletNodes(tree, treelets), margin, rays, occluded, count);
 }
 
 void TreeletFirstHits(const PkdTree& tree, const Treelets& treelets, const TreeMargin& margin, const Ray* rays,

@@ -120,8 +120,9 @@ Box encode(const Box* children, unsigned bits, TreeletNode& node) {
     std::fill_n(node.upper[c], treelet_fanout, std::uint8_t{0});
     node.origin[c] = around.is_empty() ? 0.0f : rounded_down(around.lower[c]);
     const double from = static_cast<double>(node.origin[c]);
-    // The smallest power of two of which 255 reach from end to end.
-    int exponent = -126;
+    // The smallest power of two of which 255 reach from end to end. Where there is nothing, near planes have to be
+    // behind far ones by more than any rounding.
+    int exponent = around.is_empty() ? 40 : -126;
     if (!around.is_empty() && around.upper[c] > from) {
       exponent = std::clamp(std::ilogb((around.upper[c] - from) / 255.0), -126, 126);
       if (std::ldexp(255.0, exponent) < around.upper[c] - from) ++exponent;

@@ -25,7 +25,7 @@ namespace insitu::kernels::HWY_NAMESPACE {
 
 // Those of `items` whose mask has bit `child` set, in their order; returns how many. Whole vectors are read and
 // written: there has to be room for 16 more behind each array.
-HWY_INLINE std::size_t ListChild(const std::uint32_t* HWY_RESTRICT items, const std::uint8_t* HWY_RESTRICT masks,
+HWY_NOINLINE std::size_t ListChild(const std::uint32_t* HWY_RESTRICT items, const std::uint8_t* HWY_RESTRICT masks,
                                  std::size_t count, unsigned child, std::uint32_t* HWY_RESTRICT list) {
   const hn::CappedTag<std::uint32_t, 16> d;
   const hn::Rebind<std::uint8_t, decltype(d)> b;

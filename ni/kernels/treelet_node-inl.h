@@ -31,7 +31,7 @@ struct NearFarPlanes {
   HWY_ALIGN float near[3][treelet_fanout];
   HWY_ALIGN float far[3][treelet_fanout];
 
-  HWY_INLINE void Decode(const TreeletNode& node, std::uint32_t octant) {
+  HWY_NOINLINE void Decode(const TreeletNode& node, std::uint32_t octant) {
     const hn::CappedTag<float, treelet_fanout> d;
     const hn::Rebind<std::int32_t, decltype(d)> i;
     const hn::Rebind<std::uint8_t, decltype(d)> b;

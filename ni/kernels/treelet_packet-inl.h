@@ -190,7 +190,7 @@ class TreeletPackets {
 
   // After the walk: what has been noted is confirmed, all of a packet together, with the operations of sphere.h in
   // their order: the same bits as sphere_first_hit.
-  void Finish() {
+  HWY_NOINLINE void Finish() {
     for (std::size_t i = 0; i < packet_count_; ++i)
       if (packets_[i].noted != 0) ConfirmAllNoted(packets_[i]);
   }
@@ -210,7 +210,7 @@ class TreeletPackets {
 
   HWY_INLINE void Prefetch(std::uint64_t begin, std::uint64_t end) const { leaf_.Prefetch(positions_, begin, end); }
 
-  HWY_INLINE void Visit(std::uint64_t begin, std::uint64_t end, const std::uint32_t* list, std::size_t count) {
+  HWY_NOINLINE void Visit(std::uint64_t begin, std::uint64_t end, const std::uint32_t* list, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
       RayBeam& beam = beams_[list[i]];
       TreeletPacket& packet = packets_[beam.packet];
@@ -252,7 +252,7 @@ class TreeletPackets {
     return true;
   }
 
-  HWY_INLINE static std::uint32_t MeetBeam(const NearFarPlanes& planes, const RayBeam& beam) {
+  HWY_NOINLINE static std::uint32_t MeetBeam(const NearFarPlanes& planes, const RayBeam& beam) {
     const hn::CappedTag<float, treelet_fanout> d;
     using W = hn::Vec<decltype(d)>;
     std::uint32_t met = 0;
@@ -271,7 +271,7 @@ class TreeletPackets {
   }
 
   // Any of the rays `active` meets child k.
-  HWY_INLINE static bool MeetLanes(const NearFarPlanes& planes, unsigned k, const TreeletPacket& packet,
+  HWY_NOINLINE static bool MeetLanes(const NearFarPlanes& planes, unsigned k, const TreeletPacket& packet,
                                    std::uint32_t active) {
     const D d;
     std::uint32_t met = 0;
@@ -290,7 +290,7 @@ class TreeletPackets {
   }
 
   // The farthest distance that any ray still looks at.
-  HWY_INLINE void UpdateLatest(RayBeam& beam) const {
+  HWY_NOINLINE void UpdateLatest(RayBeam& beam) const {
     const TreeletPacket& packet = packets_[beam.packet];
     const D d;
     V latest = hn::Set(d, -1.0f);
@@ -306,7 +306,7 @@ class TreeletPackets {
   // sphere is in truth: the near intersection moves by at least the change of the radius. That bounds the distance of a
   // hit from both sides. While one candidate of a ray is nearer than all others, bounds and all, it is only noted;
   // where bounds overlap, double arithmetic decides at once.
-  HWY_INLINE bool VisitParticle(TreeletPacket& packet, std::uint64_t place, float radius, std::uint32_t active) {
+  HWY_NOINLINE bool VisitParticle(TreeletPacket& packet, std::uint64_t place, float radius, std::uint32_t active) {
     const D d;
     const hn::RebindToUnsigned<D> u;
     const std::size_t lanes = hn::Lanes(d);

@@ -1,0 +1,225 @@
+// Some particles against rays and beams, in the frame of the whole tree: SIMD over particles. Included once per SIMD
+// target.
+#if defined(INSITU_KERNELS_PARTICLE_BLOCK_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef INSITU_KERNELS_PARTICLE_BLOCK_INL_H_
+#undef INSITU_KERNELS_PARTICLE_BLOCK_INL_H_
+#else
+#define INSITU_KERNELS_PARTICLE_BLOCK_INL_H_
+#endif
+
+#include "kernels/pkd_leaf-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace insitu::kernels::HWY_NAMESPACE {
+
+// Asks for what a leaf reads: of records, a line of memory holds five; where an index stands before them, it comes
+// first, sixteen to a line.
+template <class Positions>
+HWY_INLINE void PrefetchRun(const Positions& positions, std::uint64_t begin, std::uint64_t end) {
+  constexpr std::uint64_t per_line = Positions::is_indirect ? 16 : 5;
+  for (std::uint64_t place = begin; place < end; place += per_line) positions.prefetch(place);
+  if (begin < end) positions.prefetch(end - 1);
+}
+template <class Positions>
+HWY_INLINE void PrefetchRunBehind(const Positions& positions, std::uint64_t begin, std::uint64_t end) {
+  if constexpr (Positions::is_indirect)
+    for (std::uint64_t place = begin; place < end; ++place) positions.prefetch_behind(place);
+}
+
+// Particles that stand at consecutive places.
+template <class Positions>
+class ParticleRun {
+ public:
+  static constexpr std::size_t most_lanes = 16;
+
+  HWY_INLINE ParticleRun(const PkdTree& tree, const Positions& positions, std::uint64_t begin, std::uint64_t end)
+      : tree_(tree), positions_(positions), begin_(begin), size_(begin < end ? static_cast<std::size_t>(end - begin) : 0) {}
+
+  HWY_INLINE std::size_t size() const { return size_; }
+  HWY_INLINE std::uint64_t place(std::size_t i) const { return begin_ + i; }
+
+  // The centres of particles first .. first + count, at most a vector of them.
+  template <class D, class V>
+  HWY_INLINE void Load(D d, std::size_t first, std::size_t count, V& x, V& y, V& z) const {
+    const std::uint64_t begin = begin_ + first;
+    if constexpr (std::is_same_v<Positions, PlacedPositions<float>>) {
+      // What stands behind the run is read along, as far as there is something, and left alone.
+      if (HWY_LIKELY(begin + hn::Lanes(d) <= tree_.position.count)) {
+        if (HWY_LIKELY(positions_.packed_records()))
+          return hn::LoadInterleaved3(d, positions_.scalars(begin, 0), x, y, z);
+        if (positions_.packed_columns()) {
+          x = hn::LoadU(d, positions_.scalars(begin, 0));
+          y = hn::LoadU(d, positions_.scalars(begin, 1));
+          z = hn::LoadU(d, positions_.scalars(begin, 2));
+          return;
+        }
+      }
+    }
+    HWY_ALIGN float staged[3][most_lanes] = {};
+    for (std::size_t i = 0; i < count; ++i) {
+      float centre[3];
+      positions_.centre_f32(begin + i, centre);
+      for (std::size_t c = 0; c < 3; ++c) staged[c][i] = centre[c];
+    }
+    x = hn::Load(d, staged[0]);
+    y = hn::Load(d, staged[1]);
+    z = hn::Load(d, staged[2]);
+  }
+
+ private:
+  const PkdTree& tree_;
+  const Positions& positions_;
+  std::uint64_t begin_;
+  std::size_t size_;
+};
+
+// A few particles from here and there.
+class ParticlePick {
+ public:
+  static constexpr std::size_t most = 7;
+
+  HWY_INLINE std::size_t size() const { return size_; }
+  HWY_INLINE std::uint64_t place(std::size_t i) const { return places_[i]; }
+  HWY_INLINE void clear() { size_ = 0; }
+  HWY_INLINE void add(std::uint64_t place, const float centre[3]) {
+    places_[size_] = place;
+    for (std::size_t c = 0; c < 3; ++c) centre_[c][size_] = centre[c];
+    ++size_;
+  }
+
+  template <class D, class V>
+  HWY_INLINE void Load(D d, std::size_t first, std::size_t, V& x, V& y, V& z) const {
+    x = hn::Load(d, centre_[0] + first);
+    y = hn::Load(d, centre_[1] + first);
+    z = hn::Load(d, centre_[2] + first);
+  }
+
+ private:
+  HWY_ALIGN float centre_[3][16] = {};
+  std::uint64_t places_[most];
+  std::size_t size_ = 0;
+};
+
+// The tests. Of a PkdTree they know the radii.
+class ParticleTests {
+ public:
+  static constexpr std::size_t most_lanes = 16;
+
+  ParticleTests(const PkdTree& tree, double margin)
+      : tree_(tree), margin_(margin), uniform_(tree.radius.kind == RadiusView::Kind::uniform) {
+    const double wide = tree.radius.uniform + margin;
+    const double inner = std::max(tree.radius.uniform - margin, 0.0);
+    inner2_ = static_cast<float>(inner * inner * (1.0 - 8.0 * f32_unit));
+    shrink_ = static_cast<float>(2.0 * margin * (1.0 + 1e-3));
+    radius_ = static_cast<float>(wide * (1.0 + 4.0 * f32_unit));
+    radius2_ = static_cast<float>(wide * wide * (1.0 + 8.0 * f32_unit));
+  }
+
+  // Calls confirm(ray, place, is_certain) for the pairs that may hit; where it returns true the ray needs no more. What
+  // is certain is hit in truth, and from outside, behind the start and before the end of the ray: the sphere without
+  // its margin is hit, the one with it begins behind t_low and two margins (which is the start of the ray and one), and
+  // the hit lies before the middle, b, which is nearer than t_high less two margins.
+  template <class Particles, class Rays, class ConfirmHit>
+  HWY_INLINE void VisitTogether(const Particles& particles, const Rays* rays, const std::uint32_t* list,
+                                std::size_t list_size, const ConfirmHit& confirm) const {
+    const hn::CappedTag<float, most_lanes> d;
+    using V = hn::Vec<decltype(d)>;
+    const std::size_t lanes = hn::Lanes(d);
+    for (std::size_t first = 0; first < particles.size(); first += lanes) {
+      const std::size_t count = std::min(particles.size() - first, lanes);
+      V x, y, z;
+      particles.Load(d, first, count, x, y, z);
+      V r2 = hn::Set(d, radius2_);
+      V inner2 = hn::Set(d, inner2_);
+      if (HWY_UNLIKELY(!uniform_)) {
+        HWY_ALIGN float radii2[2][most_lanes] = {};
+        for (std::size_t i = 0; i < count; ++i) {
+          const double radius = tree_.radius.value(tree_.item(particles.place(first + i)));
+          const double wide = radius + margin_;
+          const double inner = std::max(radius - margin_, 0.0);
+          radii2[0][i] = static_cast<float>(wide * wide * (1.0 + 8.0 * f32_unit));
+          radii2[1][i] = static_cast<float>(inner * inner * (1.0 - 8.0 * f32_unit));
+        }
+        r2 = hn::Load(d, radii2[0]);
+        inner2 = hn::Load(d, radii2[1]);
+      }
+      const std::uint32_t valid = ~std::uint32_t{0} >> (32 - count);
+      for (std::size_t i = 0; i < list_size; ++i) {
+        const auto& ray = rays[list[i]];
+        const auto [b, distance2] =
+            ApproachOf(hn::Sub(x, hn::Set(d, ray.origin[0])), hn::Sub(y, hn::Set(d, ray.origin[1])),
+                       hn::Sub(z, hn::Set(d, ray.origin[2])), hn::Set(d, ray.direction[0]),
+                       hn::Set(d, ray.direction[1]), hn::Set(d, ray.direction[2]));
+        const auto close = hn::Le(distance2, r2);
+        if (HWY_LIKELY(hn::AllFalse(d, close))) continue;
+        const V s = hn::Sqrt(hn::Max(hn::Sub(r2, distance2), hn::Zero(d)));
+        const V t_high = hn::Set(d, ray.t_high);
+        const V t_low = hn::Set(d, ray.t_low);
+        const V shrink = hn::Set(d, shrink_);
+        const V enter = hn::Sub(b, s);
+        const auto in_time = hn::And(hn::Le(enter, t_high), hn::Ge(hn::Add(b, s), t_low));
+        std::uint32_t possible = MaskBits(d, hn::And(close, in_time)) & valid;
+        std::uint32_t certain =
+            possible & MaskBits(d, hn::And(hn::Le(distance2, inner2), hn::And(hn::Gt(enter, hn::Add(t_low, shrink)),
+                                                                              hn::Lt(b, hn::Sub(t_high, shrink)))));
+        possible &= ~certain;
+        bool done = false;
+        for (; certain != 0 && !done; certain &= certain - 1)
+          done = confirm(list[i], particles.place(first + hwy::Num0BitsBelowLS1Bit_Nonzero32(certain)), true);
+        for (; possible != 0 && !done; possible &= possible - 1)
+          done = confirm(list[i], particles.place(first + hwy::Num0BitsBelowLS1Bit_Nonzero32(possible)), false);
+      }
+    }
+  }
+
+  // Calls visit(place, radius with margin) for the particles that the beam can touch up to the distance `latest`.
+  template <class Particles, class Beam, class VisitParticle>
+  HWY_INLINE void VisitWithinBeam(const Particles& particles, const Beam& beam, float latest,
+                                  const VisitParticle& visit) const {
+    const hn::CappedTag<float, most_lanes> d;
+    using V = hn::Vec<decltype(d)>;
+    const std::size_t lanes = hn::Lanes(d);
+    for (std::size_t first = 0; first < particles.size(); first += lanes) {
+      const std::size_t count = std::min(particles.size() - first, lanes);
+      V x, y, z;
+      particles.Load(d, first, count, x, y, z);
+      V r = hn::Set(d, radius_);
+      HWY_ALIGN float radii[most_lanes];
+      if (HWY_UNLIKELY(!uniform_)) {
+        for (std::size_t i = 0; i < count; ++i)
+          radii[i] = static_cast<float>((tree_.radius.value(tree_.item(particles.place(first + i))) + margin_) *
+                                        (1.0 + 4.0 * f32_unit));
+        for (std::size_t i = count; i < most_lanes; ++i) radii[i] = 0.0f;
+        r = hn::Load(d, radii);
+      }
+      const auto [b, distance2] =
+          ApproachOf(hn::Sub(x, hn::Set(d, beam.origin[0])), hn::Sub(y, hn::Set(d, beam.origin[1])),
+                     hn::Sub(z, hn::Set(d, beam.origin[2])), hn::Set(d, beam.direction[0]),
+                     hn::Set(d, beam.direction[1]), hn::Set(d, beam.direction[2]));
+      const V wide = hn::Add(r, hn::Set(d, beam.start));
+      const V t = hn::Mul(hn::Max(hn::Add(b, wide), hn::Zero(d)), hn::Set(d, beam.stretch));
+      const V reach = hn::MulAdd(hn::Set(d, beam.growth), t, wide);
+      const auto meets =
+          hn::And(hn::Le(distance2, hn::Mul(reach, reach)), hn::Le(hn::Sub(b, reach), hn::Set(d, latest)));
+      std::uint32_t bits = MaskBits(d, meets) & ~std::uint32_t{0} >> (32 - count);
+      for (; bits != 0; bits &= bits - 1) {
+        const auto i = static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(bits));
+        visit(particles.place(first + i), uniform_ ? radius_ : radii[i]);
+      }
+    }
+  }
+
+ private:
+  const PkdTree& tree_;
+  double margin_;
+  bool uniform_;
+  float radius_;
+  float radius2_;
+  float inner2_;  // of the sphere without its margin
+  float shrink_;  // two margins
+};
+
+}  // namespace insitu::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // per target

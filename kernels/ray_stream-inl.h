@@ -1,0 +1,158 @@
+// Streams of rays that go all ways (occlusion, shadows): SIMD runs over the eight children of a node
+// and over the particles of a leaf, the loop over rays; neither has a branch that depends on a single box test.
+// Included once per SIMD target.
+#if defined(INSITU_KERNELS_RAY_STREAM_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef INSITU_KERNELS_RAY_STREAM_INL_H_
+#undef INSITU_KERNELS_RAY_STREAM_INL_H_
+#else
+#define INSITU_KERNELS_RAY_STREAM_INL_H_
+#endif
+
+#include <memory>
+
+#include "kernels/particle_block-inl.h"
+#include "kernels/pkd_enter-inl.h"
+#include "kernels/pkd_single-inl.h"
+#include "kernels/walk-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace insitu::kernels::HWY_NAMESPACE {
+
+constexpr std::size_t longest_stream = 4096;
+
+// The items of a walk: single rays.
+template <class Positions>
+class StreamRays {
+ public:
+  static constexpr std::uint8_t no_octant = 8;
+  static constexpr bool is_indirect = Positions::is_indirect;
+
+  StreamRays(const PkdTree& tree, const Positions& positions, const TreeMargin& margin, std::size_t most_rays)
+      : tree_(tree),
+        positions_(positions),
+        margin_(margin),
+        tests_(tree, margin.value),
+        rays_(new WalkRay[most_rays]) {}
+
+  // rays[0 .. count) that are not occluded yet; octants[i] is no_octant when there is nothing left to trace.
+  void Enter(const Ray* rays, std::uint8_t* occluded, std::size_t count, std::uint8_t* octants) {
+    source_ = rays;
+    occluded_ = occluded;
+    for (std::size_t i = 0; i < count; i += EnteredRays::size)
+      EnterSome(i, std::min(count - i, EnteredRays::size), octants + i);
+  }
+
+  HWY_INLINE std::uint32_t Meet(const NodePlanes& planes, std::uint32_t ray, bool) const {
+    return planes.Meet(rays_[ray]);
+  }
+
+  HWY_INLINE void Prefetch(std::uint64_t begin, std::uint64_t end) const { PrefetchRun(positions_, begin, end); }
+  HWY_INLINE void PrefetchBehind(std::uint64_t begin, std::uint64_t end) const {
+    PrefetchRunBehind(positions_, begin, end);
+  }
+
+  HWY_INLINE void Visit(std::uint64_t begin, std::uint64_t end, const std::uint32_t* list, std::size_t count) {
+    Visit(ParticleRun<Positions>(tree_, positions_, begin, end), list, count);
+  }
+  HWY_INLINE void VisitPick(const ParticlePick& pick, const std::uint32_t* list, std::size_t count) {
+    Visit(pick, list, count);
+  }
+
+ private:
+  template <class Particles>
+  HWY_INLINE void Visit(const Particles& particles, const std::uint32_t* list, std::size_t count) {
+    tests_.VisitTogether(particles, rays_.get(), list, count,
+                         [&](std::uint32_t ray, std::uint64_t place, bool is_certain)
+                             HWY_ATTR { return is_certain ? Occlude(ray, place) : Confirm(ray, place); });
+  }
+
+  void EnterSome(std::size_t first, std::size_t count, std::uint8_t* octants) {
+    double t_limits[EnteredRays::size];
+    for (std::size_t i = 0; i < count; ++i) {
+      const Ray& ray = source_[first + i];
+      const bool is_left = occluded_[first + i] == 0;
+      t_limits[i] = is_left ? ray.t_max : -std::numeric_limits<double>::infinity();
+      if (is_left && HWY_UNLIKELY(!margin_.Fits(ray))) {
+        AnyHitVisitor visitor(ray);
+        TraverseTree(tree_, positions_, ray, visitor);
+        occluded_[first + i] = visitor.found ? 1 : 0;
+        t_limits[i] = -std::numeric_limits<double>::infinity();
+      }
+    }
+    EnteredRays entered;
+    EnterTree(tree_, margin_, source_ + first, t_limits, count, false, entered);
+    for (std::size_t i = 0; i < count; ++i) {
+      WalkRay& ray = rays_[first + i];
+      int octant = 0;
+      for (int c = 0; c < 3; ++c) {
+        ray.origin[c] = entered.origin[c][i];
+        ray.direction[c] = entered.direction[c][i];
+        ray.inverse[c] = entered.inverse[c][i];
+        ray.start[c] = -ray.origin[c] * ray.inverse[c];
+        octant |= ray.inverse[c] < 0.0f ? 1 << c : 0;
+      }
+      ray.t_low = entered.t_low[i];
+      ray.t_high = entered.t_high[i];
+      octants[i] = entered.is_inside(i) ? static_cast<std::uint8_t>(octant) : no_octant;
+    }
+  }
+
+  // A hit that needs no confirmation. True: the ray is occluded.
+  HWY_INLINE bool Occlude(std::uint32_t number, std::uint64_t place) {
+    if (tree_.item(place) == source_[number].exclude) return false;
+    occluded_[number] = 1;
+    rays_[number].t_high = -std::numeric_limits<float>::infinity();
+    return true;
+  }
+
+  // True: the ray is occluded.
+  HWY_NOINLINE bool Confirm(std::uint32_t number, std::uint64_t place) {
+    WalkRay& ray = rays_[number];
+    if (ray.t_high == -std::numeric_limits<float>::infinity()) return true;
+    AnyHitVisitor visitor(source_[number]);
+    if (!visitor.visit(tree_, positions_, place, source_[number])) return false;
+    occluded_[number] = 1;
+    ray.t_high = -std::numeric_limits<float>::infinity();
+    return true;
+  }
+
+  const PkdTree& tree_;
+  const Positions& positions_;
+  const TreeMargin& margin_;
+  const ParticleTests tests_;
+  const Ray* source_ = nullptr;
+  std::uint8_t* occluded_ = nullptr;
+  std::unique_ptr<WalkRay[]> rays_;
+};
+
+template <class Nodes, class Positions>
+class AnyHitStream {
+ public:
+  AnyHitStream(const PkdTree& tree, const Positions& positions, const Nodes& nodes, const TreeMargin& margin,
+               std::size_t most_rays)
+      : rays_(tree, positions, margin, most_rays), walks_(nodes, rays_, most_rays) {}
+
+  // Traces rays[0 .. count), at most longest_stream: a walk per octant.
+  void Run(const Ray* rays, std::uint8_t* occluded, std::size_t count) {
+    std::uint8_t octants[longest_stream];
+    std::size_t sizes[9] = {};
+    rays_.Enter(rays, occluded, count, octants);
+    for (std::size_t i = 0; i < count; ++i) ++sizes[octants[i]];
+    for (std::uint32_t octant = 0; octant < 8; ++octant) {
+      if (sizes[octant] == 0) continue;
+      std::uint32_t* list = walks_.Add(octant, sizes[octant]);
+      for (std::size_t i = 0; i < count; ++i)
+        if (octants[i] == octant) *list++ = static_cast<std::uint32_t>(i);
+    }
+    walks_.Run();
+  }
+
+ private:
+  StreamRays<Positions> rays_;
+  Walks<Nodes, StreamRays<Positions>> walks_;
+};
+
+}  // namespace insitu::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // per target

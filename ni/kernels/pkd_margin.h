@@ -1,0 +1,48 @@
+// How far f32 tests of a whole tree may be off.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/pkd_tree.h"
+
+namespace insitu::kernels {
+
+// Half of the spacing of numbers at 1: the relative error of one operation.
+constexpr double f32_unit = 5.9604644775390625e-8;
+constexpr double f64_unit = 1.1102230246251565e-16;
+
+// Whole trees in f32: rays start at the point where they enter the box of the tree, rounded to f32, and `value` covers
+// that rounding and those of pkd_leaf-inl.h for reach = twice the size of the box. While the margin is below the
+// largest radius this is the fast way: at worst four times as many candidates as hits have to be confirmed. Smaller
+// particles get a frame for every leaf.
+struct TreeMargin {
+  double value;
+  double extent;  // diagonal of the tree
+  bool fits;
+
+  // Rays from very far away lose more in double than the margin has to spare.
+  bool Fits(const Ray& ray) const {
+    double distance = 0.0;
+    for (int c = 0; c < 3; ++c) distance = std::max(distance, std::abs(ray.origin[c]));
+    return Fits(distance);
+  }
+  bool Fits(double distance) const {
+    return fits && 128.0 * f64_unit * distance < 4.0 * f32_unit * extent;
+  }
+
+  explicit TreeMargin(const PkdTree& tree) {
+    double diagonal2 = 0.0;
+    double magnitude = 0.0;
+    for (int c = 0; c < 3; ++c) {
+      const double side = tree.upper[c] - tree.lower[c] + 2.0 * tree.radius_max;
+      diagonal2 += side * side;
+      magnitude = std::max({magnitude, std::abs(tree.lower[c]), std::abs(tree.upper[c])});
+    }
+    extent = std::sqrt(diagonal2);
+    value = 32.0 * f32_unit * (2.0 * extent + magnitude);
+    fits = value < tree.radius_max && extent > 1e-12 && extent + magnitude < 1e12;
+  }
+};
+
+}  // namespace insitu::kernels
