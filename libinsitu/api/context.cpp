@@ -21,7 +21,7 @@ std::uint32_t next_context_serial() {
 
 constexpr std::uint32_t most_pixels_per_side = 1 << 16;
 constexpr std::uint32_t most_samples = 1 << 16;
-constexpr double default_pixel_error = 0.01;  // two and a half of the 255 steps of a PNG file
+constexpr double default_pixel_error = 0.02;  // five of the 255 steps of a PNG file
 
 std::string software() {
   return "libinsitu " + std::to_string(INSITU_VERSION_MAJOR) + "." + std::to_string(INSITU_VERSION_MINOR) + "." +

@@ -17,7 +17,7 @@ struct RenderSettings {
   glm::dvec4 background{1.0};               // linear RGB, not premultiplied, and opacity
   std::uint32_t samples_per_pixel = 4;      // of adaptive sampling the least
   std::uint32_t max_samples_per_pixel = 0;  // 0: no adaptive sampling
-  double pixel_error = 0.01;                // tolerated standard error of displayed values of 0..1
+  double pixel_error = 0.02;                // tolerated standard error of displayed values of 0..1
 };
 
 // Rays and seconds of one effect; seconds are those of all threads added up.

@@ -167,7 +167,7 @@ void add_output(CLI::App& app, Options& options, Texts& texts) {
           ->type_name("N")
           ->group(group);
   app.add_option("--pixel-error", options.pixel_error,
-                 wrapped("Standard error of displayed values, 0..1; 0.01 by default"))
+                 wrapped("Standard error of displayed values, 0..1; 0.02 by default"))
       ->check(CLI::PositiveNumber)
       ->needs(max_samples)
       ->type_name("E")

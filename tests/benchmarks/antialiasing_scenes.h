@@ -16,7 +16,7 @@ struct Sampling {
   std::string name;
   std::uint32_t samples = 4;
   std::uint32_t max_samples = 0;  // 0: fixed
-  double pixel_error = 0.01;
+  double pixel_error = 0.02;
 };
 
 struct Rendered {

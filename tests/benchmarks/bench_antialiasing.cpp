@@ -85,13 +85,6 @@ double seconds_of_fixed(const std::vector<Row>& rows, double error, double Row::
   return fixed[i]->seconds * std::pow(error / (fixed[i]->*kind), slope);
 }
 
-void write_picture(const Options& options, const std::string& name, const FrameBuffer& frame) {
-  if (options.images.empty()) return;
-  const std::string path = options.images + "/" + name + ".png";
-  const insitu::WriteResult result = insitu::write_image(frame, {}, path);
-  if (result.status != INSITU_OK) std::fprintf(stderr, "%s\n", result.message.c_str());
-}
-
 // Differences of displayed values, eight times as strong, around middle grey.
 FrameBuffer difference_picture(const std::vector<double>& off, std::uint32_t edge_px) {
   FrameBuffer frame;
@@ -105,14 +98,28 @@ FrameBuffer difference_picture(const std::vector<double>& off, std::uint32_t edg
   return frame;
 }
 
+// Panels side by side, in rows of `columns`, each pixel twice as large.
+FrameBuffer sheet_of(const std::vector<FrameBuffer>& panels, std::uint32_t columns) {
+  const std::uint32_t edge = 2 * panels[0].width;
+  FrameBuffer sheet;
+  sheet.allocate(columns * edge, static_cast<std::uint32_t>(panels.size()) / columns * edge, INSITU_CHANNEL_COLOR);
+  for (std::uint32_t y = 0; y < sheet.height; ++y) {
+    for (std::uint32_t x = 0; x < sheet.width; ++x) {
+      const FrameBuffer& panel = panels[y / edge * columns + x / edge];
+      const std::size_t from = 4 * (std::size_t{y % edge / 2} * panel.width + x % edge / 2);
+      std::copy_n(&panel.color[from], 4, &sheet.color[4 * (std::size_t{y} * sheet.width + x)]);
+    }
+  }
+  return sheet;
+}
+
 std::vector<Sampling> samplings(bool quick) {
   std::vector<Sampling> all;
   for (const std::uint32_t n : {1u, 4u, 16u, 64u, 256u}) all.push_back({"fixed_" + std::to_string(n), n, 0, 0.0});
-  all.push_back({"adaptive", 4, 256, 0.01});
+  all.push_back({"adaptive", 4, 256, 0.02});
   if (quick) return all;
-  all.push_back({"adaptive_0.04", 4, 1024, 0.04});
-  all.push_back({"adaptive_0.02", 4, 1024, 0.02});
-  all.push_back({"adaptive_0.01", 4, 4096, 0.01});
+  all.push_back({"adaptive_0.05", 4, 256, 0.05});
+  all.push_back({"adaptive_0.01", 4, 1024, 0.01});
   return all;
 }
 
@@ -125,7 +132,8 @@ std::vector<Row> measure_scene(const Options& options, const std::string& scene,
   const std::vector<double> truth_moved = displayed(cloud.reference(options.reference_edge, shift_px));
   const std::vector<double> truth_step = difference(truth_moved, truth);
   std::vector<double> light(reference.color.begin(), reference.color.end());
-  write_picture(options, scene + "_reference", reference);
+  std::vector<FrameBuffer> panels;
+  std::vector<FrameBuffer> differences;
 
   std::vector<Row> rows;
   std::vector<Rendered> pictures;
@@ -157,8 +165,10 @@ std::vector<Row> measure_scene(const Options& options, const std::string& scene,
         static_cast<double>(pictures[i].costs.pixels_over_error) / static_cast<double>(pictures[i].costs.pixels);
     std::printf("%-16s %9.2f %9.4f %9.5f %9.5f %+9.5f %9.5f %8.2f%%\n", row.sampling.name.c_str(), row.mean_samples,
                 row.seconds, row.rms, row.p99, row.bias, row.flicker, 100.0 * row.over_error);
-    write_picture(options, scene + "_" + row.sampling.name, pictures[i].frame);
-    write_picture(options, scene + "_" + row.sampling.name + "_difference", difference_picture(off, options.edge_px));
+    if (row.sampling.name == "fixed_1" || row.sampling.name == "fixed_4" || row.sampling.name == "adaptive") {
+      panels.push_back(pictures[i].frame);
+      differences.push_back(difference_picture(off, options.edge_px));
+    }
     json.push_back({{"scene", scene},
                     {"sampling", row.sampling.name},
                     {"mean_samples", row.mean_samples},
@@ -171,6 +181,14 @@ std::vector<Row> measure_scene(const Options& options, const std::string& scene,
   }
   std::printf("\n");
   std::fflush(stdout);
+  if (!options.images.empty()) {
+    panels.push_back(reference);
+    differences.push_back(difference_picture(std::vector<double>(truth.size(), 0.0), options.edge_px));
+    panels.insert(panels.end(), differences.begin(), differences.end());
+    const insitu::WriteResult result =
+        insitu::write_image(sheet_of(panels, 4), {}, options.images + "/antialiasing_" + scene + ".png");
+    if (result.status != INSITU_OK) std::fprintf(stderr, "%s\n", result.message.c_str());
+  }
   return rows;
 }
 
@@ -185,7 +203,9 @@ int main(int argc, char** argv) {
   Options options;
   app.add_flag("--quick", options.quick, "1M particles, 48 x 48 pixels, one adaptive setting: within 45 s");
   app.add_option("--json", options.json, "write {context, results} to this file");
-  app.add_option("--images", options.images, "write pictures and differences to this folder");
+  app.add_option("--images", options.images,
+                 "write one picture per scene to this folder: 1 and 4 samples, adaptive, "
+                 "reference, and below them the differences from it, eight times as strong");
   app.add_option("--particles", options.particles)->capture_default_str();
   app.add_option("--edge", options.edge_px, "pixels, a multiple of 16")->capture_default_str();
   app.add_option("--reference-edge", options.reference_edge, "root of the samples per pixel of the reference")

@@ -356,7 +356,7 @@ typedef struct insitu_image_desc {
    * takes samples_per_pixel. Channels other than colour are those of the first sample. */
   uint32_t max_samples_per_pixel;
   uint32_t reserved_2; /* 0 */
-  double pixel_error;  /* of sRGB values and opacity of 0..1; 0 = 0.01; only with max_samples_per_pixel */
+  double pixel_error;  /* of sRGB values and opacity of 0..1; 0 = 0.02; only with max_samples_per_pixel */
 } insitu_image_desc;
 
 /* Errors: invalid_argument, over_budget, out_of_memory. */
