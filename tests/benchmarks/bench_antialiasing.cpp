@@ -214,6 +214,7 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   if (options.quick) {
     options.edge_px = 48;
+    options.repetitions = 2;
     options.particles = 1000000;
   }
 
