@@ -21,6 +21,7 @@ std::uint32_t next_context_serial() {
 
 constexpr std::uint32_t most_pixels_per_side = 1 << 16;
 constexpr std::uint32_t most_samples = 1 << 16;
+constexpr double default_pixel_error = 0.02;  // five of the 255 steps of a PNG file
 
 std::string software() {
   return "libinsitu " + std::to_string(INSITU_VERSION_MAJOR) + "." + std::to_string(INSITU_VERSION_MINOR) + "." +
@@ -42,6 +43,24 @@ CameraMetadata camera_metadata(const Camera& camera) {
 }
 
 [[noreturn]] void refuse(const std::string& text) { throw Error(INSITU_ERROR_INVALID_ARGUMENT, text); }
+
+void read_sampling(const insitu_image_desc& desc, ImageObject& image) {
+  if (desc.samples_per_pixel != 0) image.samples_per_pixel = desc.samples_per_pixel;
+  if (image.samples_per_pixel > most_samples) refuse("image: more than 65536 samples per pixel");
+  if (!(desc.pixel_error >= 0.0 && std::isfinite(desc.pixel_error)))
+    refuse("image: pixel_error is negative or not finite");
+  if (desc.max_samples_per_pixel == 0) {
+    if (desc.pixel_error != 0.0) refuse("image: pixel_error has no effect without max_samples_per_pixel");
+    return;
+  }
+  if (desc.max_samples_per_pixel > most_samples) refuse("image: max_samples_per_pixel is above 65536");
+  if (desc.max_samples_per_pixel < image.samples_per_pixel)
+    refuse("image: max_samples_per_pixel, " + std::to_string(desc.max_samples_per_pixel) +
+           ", is below samples_per_pixel, " + std::to_string(image.samples_per_pixel));
+  if (image.samples_per_pixel < 2) refuse("image: max_samples_per_pixel needs 2 samples_per_pixel or more to judge by");
+  image.max_samples_per_pixel = desc.max_samples_per_pixel;
+  image.pixel_error = desc.pixel_error == 0.0 ? default_pixel_error : desc.pixel_error;
+}
 
 }  // namespace
 
@@ -241,15 +260,14 @@ std::uint64_t Context::create_image(const insitu_image_desc& desc) {
   const std::uint32_t width = desc.width == 0 ? 1024 : desc.width;
   const std::uint32_t height = desc.height == 0 ? 768 : desc.height;
   if (width > most_pixels_per_side || height > most_pixels_per_side) refuse("image: more than 65536 pixels a side");
-  if (desc.samples_per_pixel > most_samples) refuse("image: more than 65536 samples per pixel");
   constexpr std::uint32_t known = INSITU_CHANNEL_COLOR | INSITU_CHANNEL_DEPTH | INSITU_CHANNEL_POSITION |
                                   INSITU_CHANNEL_NORMAL | INSITU_CHANNEL_ITEM;
   if ((desc.channels & ~known) != 0) refuse("image: unknown channels");
   auto image = std::make_unique<ImageObject>();
+  read_sampling(desc, *image);
   const std::uint32_t channels = desc.channels | INSITU_CHANNEL_COLOR;
   image->share = BudgetShare(budget_, FrameBuffer::bytes_for(width, height, channels), "the frame buffer");
   image->frame.allocate(width, height, channels);
-  image->samples_per_pixel = desc.samples_per_pixel == 0 ? 4 : desc.samples_per_pixel;
   return images_.insert(std::move(image));
 }
 
@@ -275,6 +293,8 @@ void Context::render(std::uint64_t view_id, std::uint64_t image_id) {
   settings.effects = view.effects;
   settings.background = view.background;
   settings.samples_per_pixel = image.samples_per_pixel;
+  settings.max_samples_per_pixel = image.max_samples_per_pixel;
+  settings.pixel_error = image.pixel_error;
 
   const Stopwatch watch;
   const RenderCosts costs = workers_.run([&] { return render_frame(scene_, settings, image.frame); });
@@ -286,6 +306,9 @@ void Context::render(std::uint64_t view_id, std::uint64_t image_id) {
   image.metadata.time = report_.time;
   image.metadata.camera = camera_metadata(settings.camera);
   image.metadata.samples_per_pixel = image.samples_per_pixel;
+  image.metadata.max_samples_per_pixel = image.max_samples_per_pixel;
+  image.metadata.pixel_error = image.pixel_error;
+  image.metadata.mean_samples_per_pixel = static_cast<double>(costs.camera.rays) / static_cast<double>(costs.pixels);
   image.metadata.seconds_build = report_.build_s;
   image.metadata.seconds_render = seconds;
   image.metadata.software = software();
@@ -430,6 +453,9 @@ insitu_status Context::write_report() {
 void Context::refresh_report() {
   report_.bytes_owned = budget_.owned();
   report_.bytes_peak = budget_.peak();
+  report_.pixels = costs_.pixels;
+  report_.samples = costs_.camera.rays;
+  report_.pixels_over_error = costs_.pixels_over_error;
   report_.effects.clear();
   const auto add = [this](const char* name, const PassCost& cost) {
     if (cost.rays != 0) report_.effects.push_back({name, cost.rays, cost.seconds});
@@ -454,6 +480,9 @@ insitu_stats Context::stats() const {
   stats.render_s = report_.render_s;
   stats.write_s = report_.write_s;
   stats.total_s = report_.total_s;
+  stats.pixels = costs_.pixels;
+  stats.samples = costs_.camera.rays;
+  stats.pixels_over_error = costs_.pixels_over_error;
   return stats;
 }
 

@@ -36,7 +36,9 @@ struct ViewObject {
 struct ImageObject {
   FrameBuffer frame;
   BudgetShare share;
-  std::uint32_t samples_per_pixel = 0;
+  std::uint32_t samples_per_pixel = 4;
+  std::uint32_t max_samples_per_pixel = 0;
+  double pixel_error = 0.0;
   ImageMetadata metadata;
   bool rendered = false;
 };

@@ -115,6 +115,12 @@ void set_exr_attributes(OIIO::ImageSpec& spec, const ImageMetadata& metadata) {
     set_number("insitu:camera.fov_y_deg", camera.fov_y_deg);
   }
   spec.attribute("insitu:samples_per_pixel", static_cast<int>(std::min<uint32_t>(metadata.samples_per_pixel, INT_MAX)));
+  if (metadata.max_samples_per_pixel != 0) {
+    spec.attribute("insitu:max_samples_per_pixel",
+                   static_cast<int>(std::min<uint32_t>(metadata.max_samples_per_pixel, INT_MAX)));
+    set_number("insitu:pixel_error", metadata.pixel_error);
+    set_number("insitu:mean_samples_per_pixel", metadata.mean_samples_per_pixel);
+  }
   set_number("insitu:seconds.build", metadata.seconds_build);
   set_number("insitu:seconds.render", metadata.seconds_render);
 }

@@ -37,6 +37,11 @@ std::vector<TextEntry> metadata_texts(const ImageMetadata& metadata) {
     texts.emplace_back("insitu:camera.fov_y_deg", number_text(camera.fov_y_deg));
   }
   texts.emplace_back("insitu:samples_per_pixel", std::to_string(metadata.samples_per_pixel));
+  if (metadata.max_samples_per_pixel != 0) {
+    texts.emplace_back("insitu:max_samples_per_pixel", std::to_string(metadata.max_samples_per_pixel));
+    texts.emplace_back("insitu:pixel_error", number_text(metadata.pixel_error));
+    texts.emplace_back("insitu:mean_samples_per_pixel", number_text(metadata.mean_samples_per_pixel));
+  }
   texts.emplace_back("insitu:seconds.build", number_text(metadata.seconds_build));
   texts.emplace_back("insitu:seconds.render", number_text(metadata.seconds_render));
   return texts;

@@ -25,7 +25,10 @@ struct ImageMetadata {
   uint64_t step = 0;
   double time = 0;  // simulation's time unit
   CameraMetadata camera;
-  uint32_t samples_per_pixel = 0;
+  uint32_t samples_per_pixel = 0;      // of an adaptive image the least
+  uint32_t max_samples_per_pixel = 0;  // 0: not adaptive, and the next two say nothing
+  double pixel_error = 0;              // tolerated standard error, of displayed values of 0..1
+  double mean_samples_per_pixel = 0;
   double seconds_build = 0;   // wall time
   double seconds_render = 0;  // wall time
   std::string software;       // name and version of the library

@@ -14,8 +14,10 @@ struct RenderSettings {
   Camera camera;
   std::vector<Light> lights;
   Effects effects;
-  glm::dvec4 background{1.0};  // linear RGB, not premultiplied, and opacity
-  std::uint32_t samples_per_pixel = 4;
+  glm::dvec4 background{1.0};               // linear RGB, not premultiplied, and opacity
+  std::uint32_t samples_per_pixel = 4;      // of adaptive sampling the least
+  std::uint32_t max_samples_per_pixel = 0;  // 0: no adaptive sampling
+  double pixel_error = 0.02;                // tolerated standard error of displayed values of 0..1
 };
 
 // Rays and seconds of one effect; seconds are those of all threads added up.
@@ -33,10 +35,14 @@ struct RenderCosts {
   PassCost camera;
   PassCost shadows;
   PassCost ambient_occlusion;
+  std::uint64_t pixels = 0;
+  std::uint64_t pixels_over_error = 0;  // with the most samples and still above pixel_error
   RenderCosts& operator+=(const RenderCosts& other) {
     camera += other.camera;
     shadows += other.shadows;
     ambient_occlusion += other.ambient_occlusion;
+    pixels += other.pixels;
+    pixels_over_error += other.pixels_over_error;
     return *this;
   }
 };

@@ -23,6 +23,14 @@ glm::dvec2 r2_point(std::uint64_t i);
 // a + b modulo 1: a sequence shifted by the noise of a pixel (Cranley and Patterson 1976).
 glm::dvec2 shifted(const glm::dvec2& a, const glm::dvec2& b);
 
+// Point i of a sequence of the pixel's own: the first two dimensions of Sobol (1967), scrambled as Owen (1995) has it.
+// Every 2^k points beginning with a multiple of 2^k lie one in each of 2^k boxes of equal area, and within their box
+// anywhere: regular structures, such as crystals along an axis, do not fall into step with them as with r2_point. The
+// mean of n points is never much worse than that of n random ones, whatever the picture (Owen 1997: variance at most
+// e = 2.72 times as large).
+glm::dvec2 scrambled_point(std::uint32_t i, std::uint32_t x, std::uint32_t y, std::uint32_t purpose,
+                           std::uint32_t seed);
+
 // A direction about the unit vector `normal`, with a probability proportional to the cosine between them.
 glm::dvec3 cosine_direction(const glm::dvec3& normal, const glm::dvec2& u);
 

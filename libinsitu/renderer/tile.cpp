@@ -26,6 +26,10 @@ double rounding_of(const glm::dvec3& point, const SceneRay& ray, double t, const
   return 32.0 * 2.220446049250313e-16 * largest;
 }
 
+// Traced at a time: enough for the packets and streams of the kernels, at about 100 bytes a ray.
+constexpr std::size_t most_samples = 1024;
+constexpr std::size_t most_occlusion_rays = 16384;
+
 // Bits 0, 2, 4 and 6 of i: with those of i / 2 the coordinates of point i of a Morton curve over 16 x 16 pixels.
 std::uint32_t even_bits(std::uint32_t i) { return (i & 1) | (i >> 1 & 2) | (i >> 2 & 4) | (i >> 3 & 8); }
 
@@ -37,51 +41,88 @@ TileRenderer::TileRenderer(const Scene& scene, const RenderSettings& settings, c
       settings_(settings),
       plan_(plan),
       frame_(frame),
-      rays_(settings.camera, static_cast<double>(frame.width) / static_cast<double>(frame.height)) {}
+      rays_(settings.camera, static_cast<double>(frame.width) / static_cast<double>(frame.height)),
+      batch_samples_(std::clamp<std::size_t>(most_occlusion_rays / std::max(plan.ao_samples, 1u), 16, most_samples)) {}
 
 void TileRenderer::render(std::uint32_t tile_x, std::uint32_t tile_y) {
   x0_ = tile_x * tile_edge_px;
   y0_ = tile_y * tile_edge_px;
   width_ = std::min(tile_edge_px, frame_.width - x0_);
   height_ = std::min(tile_edge_px, frame_.height - y0_);
-  pixels_.assign(std::size_t{width_} * height_, glm::dvec4(0.0));
-  for (std::uint32_t sample = 0; sample < settings_.samples_per_pixel; ++sample) {
-    trace_camera(sample);
-    if (plan_.ao_samples > 0) occlude_ambient(sample);
-    light_directly();
-    shade();
-    if (sample == 0) keep_channels();
-  }
+  pixels_.assign(std::size_t{width_} * height_, PixelSamples{});
+  wanted_.assign(pixels_.size(), settings_.samples_per_pixel);
+  take_samples();
+  if (settings_.max_samples_per_pixel > 0)
+    while (want_more()) take_samples();
   store();
 }
 
-void TileRenderer::trace_camera(std::uint32_t sample) {
-  const Stopwatch watch;
-  const glm::dvec2 within = r2_point(sample);
-  const std::size_t count = std::size_t{width_} * height_;
-  samples_.resize(count);
-  stream_.resize(count);
-  hits_.resize(count);
-  // In Morton order, so that rays that follow each other stay together.
-  std::uint32_t next = 0;
+// In Morton order, and the samples of a pixel one after the other: rays that follow each other stay together.
+void TileRenderer::take_samples() {
+  samples_.clear();
   for (std::uint32_t place = 0; place < tile_edge_px * tile_edge_px; ++place) {
     const std::uint32_t column = even_bits(place);
     const std::uint32_t row = even_bits(place >> 1);
     if (column >= width_ || row >= height_) continue;
-    const std::uint32_t i = next++;
-    Sample& s = samples_[i];
-    s.pixel = row * width_ + column;
-    s.x = x0_ + column;
-    s.y = y0_ + row;
-    s.ray = {};
-    glm::dvec3 origin;
-    glm::dvec3 direction;
-    rays_.ray((s.x + within.x) / frame_.width, (s.y + within.y) / frame_.height, origin, direction);
-    set_ray(s.ray, origin, direction);
-    s.ray.ray.t_min = settings_.camera.near_clip;
-    if (settings_.camera.far_clip > 0.0) s.ray.ray.t_max = settings_.camera.far_clip;
-    stream_[i] = s.ray;
+    const std::uint32_t pixel = row * width_ + column;
+    const std::uint32_t begin = pixels_[pixel].count;
+    for (std::uint32_t index = begin; index < wanted_[pixel]; ++index) {
+      aim(pixel, index);
+      if (samples_.size() == batch_samples_) trace_batch();
+    }
   }
+  if (!samples_.empty()) trace_batch();
+}
+
+// Judges every pixel anew, also those that were done: what their neighbours have found since may say otherwise.
+bool TileRenderer::want_more() {
+  const SamplingRule rule{settings_.max_samples_per_pixel, settings_.pixel_error};
+  estimate_variances(pixels_, width_, variances_);
+  bool more = false;
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    wanted_[i] = next_count(rule, pixels_[i], variances_[i]);
+    more = more || wanted_[i] > pixels_[i].count;
+  }
+  if (more) return true;
+  for (std::size_t i = 0; i < pixels_.size(); ++i)
+    if (displayed_error(pixels_[i], variances_[i]) > rule.pixel_error) ++costs_.pixels_over_error;
+  return false;
+}
+
+void TileRenderer::aim(std::uint32_t pixel, std::uint32_t index) {
+  Sample& s = samples_.emplace_back();
+  s.pixel = pixel;
+  s.index = index;
+  s.x = x0_ + pixel % width_;
+  s.y = y0_ + pixel / width_;
+  // Where all pixels have the same few places, what lies between these places is missed by all of them, and none gives
+  // its neighbours a hint. The first sample stays in the middle, where depth and the like are taken.
+  constexpr std::uint32_t purpose = 2;
+  const bool own_places = settings_.max_samples_per_pixel > 0 && index > 0;
+  const glm::dvec2 within = own_places ? scrambled_point(index, s.x, s.y, purpose, plan_.seed) : r2_point(index);
+  glm::dvec3 origin;
+  glm::dvec3 direction;
+  rays_.ray((s.x + within.x) / frame_.width, (s.y + within.y) / frame_.height, origin, direction);
+  set_ray(s.ray, origin, direction);
+  s.ray.ray.t_min = settings_.camera.near_clip;
+  if (settings_.camera.far_clip > 0.0) s.ray.ray.t_max = settings_.camera.far_clip;
+}
+
+void TileRenderer::trace_batch() {
+  trace_camera();
+  if (plan_.ao_samples > 0) occlude_ambient();
+  light_directly();
+  shade();
+  keep_channels();
+  samples_.clear();
+}
+
+void TileRenderer::trace_camera() {
+  const Stopwatch watch;
+  const std::size_t count = samples_.size();
+  stream_.resize(count);
+  hits_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) stream_[i] = samples_[i].ray;
   scene_.first_hits(stream_.data(), hits_.data(), count);
   for (std::size_t i = 0; i < count; ++i) {
     samples_[i].hit = hits_[i];
@@ -109,9 +150,21 @@ void TileRenderer::locate(Sample& sample) const {
   sample.light = glm::dvec3(0.0);
 }
 
+// Beyond the least samples a pixel is averaged over many, each of which may be noisier: a quarter of the occlusion rays
+// leaves the same error for less.
+std::uint32_t TileRenderer::occlusion_rays(const Sample& sample) const {
+  return sample.index < settings_.samples_per_pixel ? plan_.ao_samples : (plan_.ao_samples + 3) / 4;
+}
+
+// All occlusion rays of a pixel are one sequence.
+std::uint64_t TileRenderer::first_occlusion_ray(const Sample& sample) const {
+  const std::uint64_t least = std::min(sample.index, settings_.samples_per_pixel);
+  return least * plan_.ao_samples + (sample.index - least) * occlusion_rays(sample);
+}
+
 // Ambient occlusion: the share of the hemisphere, weighted by the cosine to the normal, in which nothing is hit within
 // ao_radius.
-void TileRenderer::occlude_ambient(std::uint32_t sample) {
+void TileRenderer::occlude_ambient() {
   const Stopwatch watch;
   constexpr std::uint32_t purpose = 1;
   stream_.clear();
@@ -125,8 +178,9 @@ void TileRenderer::occlude_ambient(std::uint32_t sample) {
     ray.ray.exclude = s.hit.item;
     ray.ray.t_min = s.t_epsilon;
     ray.ray.t_max = plan_.ao_radius;
-    for (std::uint32_t k = 0; k < plan_.ao_samples; ++k) {
-      const glm::dvec2 u = shifted(r2_point(std::uint64_t{sample} * plan_.ao_samples + k), noise);
+    const std::uint64_t first = first_occlusion_ray(s);
+    for (std::uint32_t k = 0; k < occlusion_rays(s); ++k) {
+      const glm::dvec2 u = shifted(r2_point(first + k), noise);
       set_ray(ray, s.point + s.t_epsilon * s.normal, cosine_direction(s.normal, u));
       stream_.push_back(ray);
     }
@@ -137,8 +191,9 @@ void TileRenderer::occlude_ambient(std::uint32_t sample) {
   const std::uint8_t* occluded = occluded_.data();
   for (const std::uint32_t i : lit_) {
     std::uint32_t blocked = 0;
-    for (std::uint32_t k = 0; k < plan_.ao_samples; ++k) blocked += *occluded++;
-    samples_[i].ambient_visible = 1.0 - static_cast<double>(blocked) / plan_.ao_samples;
+    const std::uint32_t rays = occlusion_rays(samples_[i]);
+    for (std::uint32_t k = 0; k < rays; ++k) blocked += *occluded++;
+    samples_[i].ambient_visible = 1.0 - static_cast<double>(blocked) / rays;
   }
   costs_.ambient_occlusion.rays += stream_.size();
   costs_.ambient_occlusion.seconds += watch.seconds();
@@ -179,19 +234,19 @@ void TileRenderer::shade() {
   const glm::dvec4 background(back.r * back.a, back.g * back.a, back.b * back.a, back.a);
   for (const Sample& s : samples_) {
     if (!s.hit.found()) {
-      pixels_[s.pixel] += background;
+      pixels_[s.pixel].add(background);
       continue;
     }
     const Rgba color = scene_.entries()[s.hit.geometry].colors.of(s.hit.item);
     const glm::dvec3 light = plan_.ambient * s.ambient_visible + s.light;
-    pixels_[s.pixel] += glm::dvec4(glm::dvec3(color.r, color.g, color.b) * light, 1.0);
+    pixels_[s.pixel].add(glm::dvec4(glm::dvec3(color.r, color.g, color.b) * light, 1.0));
   }
 }
 
 // Depth and the like have no meaningful average: they are those of the first sample, in the middle of the pixel.
 void TileRenderer::keep_channels() {
   for (const Sample& s : samples_) {
-    if (!s.hit.found()) continue;
+    if (s.index != 0 || !s.hit.found()) continue;
     const std::size_t at = std::size_t{s.y} * frame_.width + s.x;
     if (!frame_.depth.empty()) frame_.depth[at] = static_cast<float>(s.hit.t);
     if (!frame_.item.empty()) frame_.item[at] = s.hit.item;
@@ -204,10 +259,10 @@ void TileRenderer::keep_channels() {
 }
 
 void TileRenderer::store() {
-  const double weight = 1.0 / settings_.samples_per_pixel;
+  costs_.pixels += pixels_.size();
   for (std::uint32_t y = 0; y < height_; ++y) {
     for (std::uint32_t x = 0; x < width_; ++x) {
-      const glm::dvec4 color = pixels_[std::size_t{y} * width_ + x] * weight;
+      const glm::dvec4 color = pixels_[std::size_t{y} * width_ + x].mean();
       float* out = &frame_.color[4 * (std::size_t{y0_ + y} * frame_.width + x0_ + x)];
       for (int c = 0; c < 4; ++c) out[c] = static_cast<float>(color[c]);
     }

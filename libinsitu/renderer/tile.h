@@ -1,6 +1,7 @@
 // One tile of an image: camera rays, the effects of the plan, and shading, one stream of rays after another.
 #pragma once
 
+#include "renderer/adaptive.h"
 #include "renderer/renderer.h"
 
 namespace insitu {
@@ -18,6 +19,7 @@ class TileRenderer {
   // A camera ray and what it came to.
   struct Sample {
     std::uint32_t pixel;  // within the tile
+    std::uint32_t index;  // among the samples of its pixel
     std::uint32_t x;
     std::uint32_t y;
     SceneRay ray;
@@ -29,9 +31,16 @@ class TileRenderer {
     glm::dvec3 light;        // direct light, cosine included
   };
 
-  void trace_camera(std::uint32_t sample);
+  // Brings every pixel to its number in wanted_.
+  void take_samples();
+  bool want_more();
+  void aim(std::uint32_t pixel, std::uint32_t index);
+  void trace_batch();
+  void trace_camera();
   void locate(Sample& sample) const;
-  void occlude_ambient(std::uint32_t sample);
+  std::uint32_t occlusion_rays(const Sample& sample) const;
+  std::uint64_t first_occlusion_ray(const Sample& sample) const;
+  void occlude_ambient();
   void light_directly();
   void shade();
   void keep_channels();
@@ -48,12 +57,15 @@ class TileRenderer {
   std::uint32_t y0_ = 0;
   std::uint32_t width_ = 0;
   std::uint32_t height_ = 0;
+  std::size_t batch_samples_ = 0;  // at most, at a time
   std::vector<Sample> samples_;
   std::vector<SceneRay> stream_;
   std::vector<SceneHit> hits_;
   std::vector<std::uint8_t> occluded_;
   std::vector<std::uint32_t> lit_;  // places in samples_ that the stream's rays belong to
-  std::vector<glm::dvec4> pixels_;  // sums over samples, premultiplied
+  std::vector<PixelSamples> pixels_;
+  std::vector<std::uint32_t> wanted_;  // samples per pixel
+  std::vector<glm::dvec4> variances_;
 };
 
 }  // namespace insitu

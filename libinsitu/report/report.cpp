@@ -67,6 +67,8 @@ std::string to_json_line(const StepReport& report) {
                      member("owned", scalar(report.bytes_owned)), member("peak", scalar(report.bytes_peak))})),
       member("items",
              object({member("total", scalar(report.items_total)), member("skipped", scalar(report.items_skipped))})),
+      member("pixels", object({member("total", scalar(report.pixels)), member("samples", scalar(report.samples)),
+                               member("over_error", scalar(report.pixels_over_error))})),
       member("effects", list_of(report.effects)),
       member("warnings", strings(report.warnings)),
       member("status", scalar(report_status_name(report.status)))};

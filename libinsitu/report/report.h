@@ -34,6 +34,10 @@ struct StepReport {
   uint64_t items_total = 0;
   uint64_t items_skipped = 0;
 
+  uint64_t pixels = 0;             // rendered
+  uint64_t samples = 0;            // camera rays through them
+  uint64_t pixels_over_error = 0;  // of adaptive images: at their most samples, and still above the tolerated error
+
   std::vector<EffectCost> effects;
   std::vector<std::string> warnings;
 

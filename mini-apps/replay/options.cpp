@@ -167,6 +167,18 @@ void add_output(CLI::App& app, Options& options, Texts& texts) {
       ->check(CLI::Range(1, 65536))
       ->type_name("N")
       ->group(group);
+  CLI::Option* const max_samples =
+      app.add_option("--max-samples", options.max_samples,
+                     wrapped("Pixels take more samples than --spp, up to N, until they are within --pixel-error"))
+          ->check(CLI::Range(2, 65536))
+          ->type_name("N")
+          ->group(group);
+  app.add_option("--pixel-error", options.pixel_error,
+                 wrapped("Standard error of displayed values, 0..1; 0.02 by default"))
+      ->check(CLI::PositiveNumber)
+      ->needs(max_samples)
+      ->type_name("E")
+      ->group(group);
   app.add_option("--report", options.report, wrapped("Append one JSON line per step to this file"))
       ->type_name("FILE")
       ->group(group);

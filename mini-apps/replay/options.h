@@ -62,6 +62,8 @@ struct Options {
   std::uint32_t width = 1024;
   std::uint32_t height = 768;
   std::uint32_t samples = 4;
+  std::uint32_t max_samples = 0;  // 0: every pixel takes `samples`
+  double pixel_error = 0.0;
   std::string out = "replay_{step}.png";
   std::string report;
   std::uint32_t threads = 0;

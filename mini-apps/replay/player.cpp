@@ -69,6 +69,8 @@ void Player::create_image() {
   desc.width = options_.width;
   desc.height = options_.height;
   desc.samples_per_pixel = options_.samples;
+  desc.max_samples_per_pixel = options_.max_samples;
+  desc.pixel_error = options_.pixel_error;
   if (is_exr(options_.out)) {
     desc.channels = INSITU_CHANNEL_DEPTH | INSITU_CHANNEL_POSITION | INSITU_CHANNEL_NORMAL | INSITU_CHANNEL_ITEM;
   }

@@ -131,15 +131,18 @@ static void check_structs(void) {
   OFFSET(insitu_view_desc, lights, 24);
   OFFSET(insitu_view_desc, background, 32);
 
-  SIZE(insitu_image_desc, 24);
+  SIZE(insitu_image_desc, 40);
   OFFSET(insitu_image_desc, struct_size, 0);
   OFFSET(insitu_image_desc, width, 4);
   OFFSET(insitu_image_desc, height, 8);
   OFFSET(insitu_image_desc, samples_per_pixel, 12);
   OFFSET(insitu_image_desc, channels, 16);
   OFFSET(insitu_image_desc, reserved, 20);
+  OFFSET(insitu_image_desc, max_samples_per_pixel, 24);
+  OFFSET(insitu_image_desc, reserved_2, 28);
+  OFFSET(insitu_image_desc, pixel_error, 32);
 
-  SIZE(insitu_stats, 104);
+  SIZE(insitu_stats, 128);
   OFFSET(insitu_stats, struct_size, 0);
   OFFSET(insitu_stats, reserved, 4);
   OFFSET(insitu_stats, step, 8);
@@ -154,6 +157,9 @@ static void check_structs(void) {
   OFFSET(insitu_stats, render_s, 80);
   OFFSET(insitu_stats, write_s, 88);
   OFFSET(insitu_stats, total_s, 96);
+  OFFSET(insitu_stats, pixels, 104);
+  OFFSET(insitu_stats, samples, 112);
+  OFFSET(insitu_stats, pixels_over_error, 120);
 }
 
 static void check_constants(void) {

@@ -151,12 +151,13 @@ inline Picture read_picture(insitu_context context, insitu_image image) {
 }
 
 inline insitu_image make_image(insitu_context context, std::uint32_t width, std::uint32_t height,
-                               std::uint32_t samples = 1) {
+                               std::uint32_t samples = 1, std::uint32_t max_samples = 0) {
   insitu_image_desc desc;
   insitu_image_desc_init(&desc);
   desc.width = width;
   desc.height = height;
   desc.samples_per_pixel = samples;
+  desc.max_samples_per_pixel = max_samples;
   desc.channels = picture_channels;
   insitu_image image = {0};
   EXPECT_TRUE(works(context, insitu_image_create(context, &desc, &image)));

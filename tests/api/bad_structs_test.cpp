@@ -1,6 +1,7 @@
 // Descriptors: their sizes, members that this version does not know, and values that are not in any list.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <limits>
 
@@ -458,15 +459,39 @@ TEST(BadStructs, ImagesThatCannotBe) {
   insitu_image_desc desc;
   insitu_image_desc_init(&desc);
   desc.width = desc.height = 4;
-  expect_refused<insitu_image_desc>(studio.context, desc,
-                                    {{"pixels", [](insitu_image_desc& d) { d.width = 65537; }},
-                                     {"pixels", [](insitu_image_desc& d) { d.height = ~0u; }},
-                                     {"samples", [](insitu_image_desc& d) { d.samples_per_pixel = ~0u; }},
-                                     {"channels", [](insitu_image_desc& d) { d.channels = 1u << 9; }}},
-                                    [&](const insitu_image_desc* d) {
-                                      insitu_image out;
-                                      return insitu_image_create(studio.context, d, &out);
-                                    });
+  expect_refused<insitu_image_desc>(
+      studio.context, desc,
+      {{"pixels", [](insitu_image_desc& d) { d.width = 65537; }},
+       {"pixels", [](insitu_image_desc& d) { d.height = ~0u; }},
+       {"samples", [](insitu_image_desc& d) { d.samples_per_pixel = ~0u; }},
+       {"max_samples", [](insitu_image_desc& d) { d.max_samples_per_pixel = 65537; }},
+       {"below samples_per_pixel, 4", [](insitu_image_desc& d) { d.max_samples_per_pixel = 3; }},
+       {"2 samples_per_pixel",
+        [](insitu_image_desc& d) {
+          d.samples_per_pixel = 1;
+          d.max_samples_per_pixel = 3;
+        }},
+       {"pixel_error", [](insitu_image_desc& d) { d.pixel_error = 0.01; }},
+       {"pixel_error",
+        [](insitu_image_desc& d) {
+          d.max_samples_per_pixel = 64;
+          d.pixel_error = -0.01;
+        }},
+       {"pixel_error",
+        [](insitu_image_desc& d) {
+          d.max_samples_per_pixel = 64;
+          d.pixel_error = std::nan("");
+        }},
+       {"pixel_error",
+        [](insitu_image_desc& d) {
+          d.max_samples_per_pixel = 64;
+          d.pixel_error = std::numeric_limits<double>::infinity();
+        }},
+       {"channels", [](insitu_image_desc& d) { d.channels = 1u << 9; }}},
+      [&](const insitu_image_desc* d) {
+        insitu_image out;
+        return insitu_image_create(studio.context, d, &out);
+      });
   insitu_array array;
   insitu_array_init(&array);
   for (const std::uint32_t bad : {0u, 3u, 1u << 9})

@@ -57,6 +57,7 @@ std::vector<Particle> make_particles(std::uint64_t seed) {
 struct Variant {
   std::uint32_t max_threads = 0;
   std::uint32_t order = INSITU_ORDER_INDEX;
+  std::uint32_t max_samples = 0;  // per pixel; 0: not adaptive
 };
 
 std::vector<Particle> shuffled(const std::vector<Particle>& particles, std::uint64_t seed) {
@@ -126,7 +127,8 @@ Picture draw(std::vector<Particle> particles, const Variant& variant) {
   EXPECT_TRUE(works(context, insitu_geometry_set_style(context, geometry, &style)));
   const insitu_camera camera = front_camera();
   const insitu_view view = testing::make_view(context, &camera, 3);
-  const insitu_image image = testing::make_image(context, 70, 50, 2);  // no multiple of any tile
+  // No multiple of any tile.
+  const insitu_image image = testing::make_image(context, 70, 50, 2, variant.max_samples);
   EXPECT_TRUE(works(context, run_step(context, geometry, arrays.desc, view, image)));
   return testing::read_picture(context, image).named([&](std::uint64_t item) { return particles[item].id; });
 }
@@ -168,6 +170,17 @@ TEST_F(Invariance, OrderOfTheParticles) {
     std::vector<Particle> backwards(particles.rbegin(), particles.rend());
     EXPECT_EQ(draw(backwards, {2, order}), reference);
   }
+}
+
+// How many samples a pixel takes is decided by what they show, which is the same.
+TEST_F(Invariance, AdaptiveSampling) {
+  const std::vector<Particle> particles = make_particles(8);
+  const Picture fixed = draw(particles, {.max_threads = 1});
+  const Picture reference = draw(particles, {.max_threads = 1, .max_samples = 24});
+  EXPECT_NE(reference.color, fixed.color);
+  EXPECT_EQ(reference.item, fixed.item);
+  for (const std::uint32_t order : {INSITU_ORDER_INDEX, INSITU_ORDER_PERMUTE, INSITU_ORDER_COPY})
+    EXPECT_EQ(draw(shuffled(particles, 5), {8, order, 24}), reference);
 }
 
 // Small sets are a single leaf, or a few.

@@ -241,13 +241,55 @@ TEST(Steps, WhatTheCountersCount) {
   EXPECT_GT(stats.build_s, 0.0);
   EXPECT_GT(stats.render_s, 0.0);
   EXPECT_EQ(stats.write_s, 0.0);
+  EXPECT_EQ(stats.pixels, 256u);
+  EXPECT_EQ(stats.samples, 256u);
+  EXPECT_EQ(stats.pixels_over_error, 0u);
   // A new step starts from zero.
   insitu_step_begin(studio.context, 12, 0.0);
   EXPECT_EQ(studio.context.stats().items, 0u);
   EXPECT_EQ(studio.context.stats().rays, 0u);
+  EXPECT_EQ(studio.context.stats().pixels, 0u);
   EXPECT_EQ(studio.context.stats().build_s, 0.0);
   EXPECT_EQ(studio.context.stats().peak_bytes, stats.peak_bytes);
   EXPECT_TRUE(works(studio.context, insitu_step_end(studio.context)));
+}
+
+// An adaptive image: how many samples there were, and how many pixels would have needed more.
+TEST(Steps, CountersOfAdaptiveImages) {
+  testing::Studio studio;
+  const testing::Cloud cloud(300);
+  studio.view = testing::make_view(studio.context, nullptr, 0);
+  std::uint64_t over_error = 256;
+  std::uint64_t samples = 0;
+  for (const std::uint32_t most : {4u, 16u, 4096u}) {
+    studio.image = testing::make_image(studio.context, 16, 16, 4, most);
+    ASSERT_TRUE(works(studio.context, studio.step(cloud.desc)));
+    const insitu_stats stats = studio.context.stats();
+    EXPECT_EQ(stats.pixels, 256u);
+    EXPECT_GT(stats.samples, samples);
+    EXPECT_LE(stats.samples, 256u * most);
+    EXPECT_EQ(stats.rays, stats.samples);
+    EXPECT_LT(stats.pixels_over_error, over_error);
+    over_error = stats.pixels_over_error;
+    samples = stats.samples;
+  }
+  EXPECT_LT(samples, 256u * 4096u / 4);
+  // Its tolerated error is 0.02 unless the caller says otherwise.
+  insitu_image_desc desc;
+  insitu_image_desc_init(&desc);
+  desc.width = desc.height = 16;
+  desc.samples_per_pixel = 4;
+  desc.max_samples_per_pixel = 4096;
+  for (const double error : {0.02, 0.06}) {
+    desc.pixel_error = error;
+    ASSERT_TRUE(works(studio.context, insitu_image_create(studio.context, &desc, &studio.image)));
+    ASSERT_TRUE(works(studio.context, studio.step(cloud.desc)));
+    if (error == 0.02) {
+      EXPECT_EQ(studio.context.stats().samples, samples);
+    } else {
+      EXPECT_LT(studio.context.stats().samples, samples / 2);
+    }
+  }
 }
 
 }  // namespace

@@ -136,6 +136,24 @@ TEST_F(Program, TakesEveryOption) {
   }
 }
 
+TEST_F(Program, TakesMoreSamplesWhereTheyAreNeeded) {
+  const auto samples = [this](const std::string& options) {
+    std::filesystem::remove(folder_.path("report.jsonl"));
+    const Outcome result = run("water.xyz --size 40x30 --spp 4 --report report.jsonl --out water.png " + options);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const std::string report = read_file(folder_.path("report.jsonl"));
+    const std::string key = "\"samples\":";
+    return std::stoul(report.substr(report.find(key) + key.size()));
+  };
+  EXPECT_EQ(samples(""), 4u * 40u * 30u);
+  const unsigned long adaptive = samples("--max-samples 64");
+  EXPECT_GT(adaptive, 4u * 40u * 30u);
+  EXPECT_LT(adaptive, 40u * 40u * 30u);
+  EXPECT_LT(samples("--max-samples 64 --pixel-error 0.1"), adaptive);
+  EXPECT_THAT(run("water.xyz --pixel-error 0.1").err, HasSubstr("--max-samples"));
+  EXPECT_EQ(run("water.xyz --spp 8 --max-samples 4 --size 9x9").exit_code, 1);
+}
+
 TEST_F(Program, OrderChangesNothingInThePicture) {
   std::string pixels[3];
   const char* const orders[3] = {"index", "permute", "copy"};

@@ -351,6 +351,12 @@ typedef struct insitu_image_desc {
   uint32_t samples_per_pixel; /* 0 = 4 */
   uint32_t channels;          /* INSITU_CHANNEL_*; colour is always there */
   uint32_t reserved;          /* 0 */
+  /* Adaptive sampling (docs/antialiasing.md): a pixel takes samples_per_pixel, at least 2, and then goes on until the
+   * standard error of its displayed value is estimated to be below pixel_error, or it has this many; 0 = every pixel
+   * takes samples_per_pixel. Channels other than colour are those of the first sample. */
+  uint32_t max_samples_per_pixel;
+  uint32_t reserved_2; /* 0 */
+  double pixel_error;  /* of sRGB values and opacity of 0..1; 0 = 0.02; only with max_samples_per_pixel */
 } insitu_image_desc;
 
 /* Errors: invalid_argument, over_budget, out_of_memory. */
@@ -394,7 +400,10 @@ typedef struct insitu_stats {
   double build_s;          /* wall time in seconds, summed over the step's calls */
   double render_s;
   double write_s;
-  double total_s; /* inside of library calls, from step_begin to step_end */
+  double total_s;             /* inside of library calls, from step_begin to step_end */
+  uint64_t pixels;            /* rendered; counted again in each image */
+  uint64_t samples;           /* camera rays through these pixels */
+  uint64_t pixels_over_error; /* of these at max_samples_per_pixel with an estimated error above pixel_error */
 } insitu_stats;
 
 INSITU_API insitu_status insitu_stats_get(insitu_context context, insitu_stats* out);

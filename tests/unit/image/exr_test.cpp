@@ -145,11 +145,15 @@ TEST(Exr, MetadataKeepTheirTypes) {
   EXPECT_EQ(number("insitu:camera.fov_y_deg"), 35.5);
   EXPECT_FALSE(file.spec.find_attribute("insitu:camera.height"));
   EXPECT_EQ(file.spec.get_int_attribute("insitu:samples_per_pixel"), 16);
+  EXPECT_FALSE(file.spec.find_attribute("insitu:max_samples_per_pixel"));
   EXPECT_EQ(number("insitu:seconds.build"), 0.0625);
   EXPECT_EQ(number("insitu:seconds.render"), 1.75);
 
   metadata.camera.kind = INSITU_CAMERA_ORTHOGRAPHIC;
   metadata.camera.height = 12.5;
+  metadata.max_samples_per_pixel = 256;
+  metadata.pixel_error = 0.01;
+  metadata.mean_samples_per_pixel = 21.5;
   metadata.step = 2147483648u;  // past what an EXR integer holds: a text
   ASSERT_EQ(write_image(noisy_frame(7, 5, 0), metadata, folder.file("b.exr")).status, INSITU_OK);
   const ImageFile second = read_image(folder.file("b.exr"));
@@ -157,6 +161,12 @@ TEST(Exr, MetadataKeepTheirTypes) {
   EXPECT_EQ(second.spec.get_string_attribute("insitu:camera.kind"), "orthographic");
   EXPECT_EQ(second.spec.get_float_attribute("insitu:camera.height"), 12.5f);
   EXPECT_FALSE(second.spec.find_attribute("insitu:camera.fov_y_deg"));
+  EXPECT_EQ(second.spec.get_int_attribute("insitu:max_samples_per_pixel"), 256);
+  double value = 0.0;
+  EXPECT_TRUE(second.spec.getattribute("insitu:pixel_error", OIIO::TypeDesc::DOUBLE, &value));
+  EXPECT_EQ(value, 0.01);
+  EXPECT_TRUE(second.spec.getattribute("insitu:mean_samples_per_pixel", OIIO::TypeDesc::DOUBLE, &value));
+  EXPECT_EQ(value, 21.5);
 }
 
 TEST(Exr, OneInputOneFile) {

@@ -111,17 +111,25 @@ TEST(Png, MetadataArriveAsTexts) {
   EXPECT_EQ(text("insitu:camera.fov_y_deg"), "35.5");
   EXPECT_EQ(text("insitu:camera.height"), "");
   EXPECT_EQ(text("insitu:samples_per_pixel"), "16");
+  EXPECT_EQ(text("insitu:max_samples_per_pixel"), "");
+  EXPECT_EQ(text("insitu:pixel_error"), "");
   EXPECT_EQ(text("insitu:seconds.build"), "0.0625");
   EXPECT_EQ(text("insitu:seconds.render"), "1.75");
 
   metadata.camera.kind = INSITU_CAMERA_ORTHOGRAPHIC;
   metadata.camera.height = 12.5;
+  metadata.max_samples_per_pixel = 256;
+  metadata.pixel_error = 0.01;
+  metadata.mean_samples_per_pixel = 21.5;
   metadata.software = "two\nlines \xc3\xa9";
   ASSERT_EQ(write_image(noisy_frame(7, 5, 0), metadata, folder.file("b.png")).status, INSITU_OK);
   const ImageFile second = read_image(folder.file("b.png"));
   EXPECT_EQ(second.spec.get_string_attribute("insitu:camera.kind"), "orthographic");
   EXPECT_EQ(second.spec.get_string_attribute("insitu:camera.height"), "12.5");
   EXPECT_FALSE(second.spec.find_attribute("insitu:camera.fov_y_deg"));
+  EXPECT_EQ(second.spec.get_string_attribute("insitu:max_samples_per_pixel"), "256");
+  EXPECT_EQ(second.spec.get_string_attribute("insitu:pixel_error"), "0.01");
+  EXPECT_EQ(second.spec.get_string_attribute("insitu:mean_samples_per_pixel"), "21.5");
   EXPECT_EQ(second.spec.get_string_attribute("Software"), "two?lines ??");
 }
 

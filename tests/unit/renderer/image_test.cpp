@@ -124,10 +124,14 @@ TEST(Image, IsTheSameOnEverySimdTarget) {
   RenderSettings settings = lit(2.0);
   settings.effects.shadows = true;
   settings.effects.ambient_occlusion = true;
-  const Picture expected = render(scene.scene(), settings, 50, 50);
-  for_each_simd_target([&](const char* name) {
-    EXPECT_EQ(render(scene.scene(), settings, 50, 50).frame.color, expected.frame.color) << name;
-  });
+  for (const std::uint32_t max_samples : {0u, 16u}) {  // fixed and adaptive
+    settings.samples_per_pixel = max_samples == 0 ? 1 : 2;
+    settings.max_samples_per_pixel = max_samples;
+    const Picture expected = render(scene.scene(), settings, 50, 50);
+    for_each_simd_target([&](const char* name) {
+      EXPECT_EQ(render(scene.scene(), settings, 50, 50).frame.color, expected.frame.color) << name;
+    });
+  }
 }
 
 }  // namespace

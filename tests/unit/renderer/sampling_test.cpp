@@ -122,6 +122,64 @@ TEST(R2Point, IsEvenlySpread) {
   EXPECT_TRUE(late.x >= 0.0 && late.x < 1.0);
 }
 
+// What a (0, 2) sequence promises: of each aligned run of 2^k points there is one in each box of area 2^-k.
+TEST(ScrambledPoint, FillsEveryElementaryBox) {
+  for (std::uint32_t pixel = 0; pixel < 20; ++pixel) {
+    for (int k = 0; k <= 8; ++k) {
+      const std::uint32_t count = 1u << k;
+      for (const std::uint32_t first : {0u, 3u * count}) {
+        for (int columns = 0; columns <= k; ++columns) {
+          std::vector<int> points(count, 0);
+          for (std::uint32_t i = first; i < first + count; ++i) {
+            const glm::dvec2 p = scrambled_point(i, pixel, 7, 1, 3);
+            ASSERT_TRUE(p.x >= 0.0 && p.x < 1.0 && p.y >= 0.0 && p.y < 1.0);
+            const auto column = static_cast<std::uint32_t>(p.x * (1u << columns));
+            const auto row = static_cast<std::uint32_t>(p.y * (1u << (k - columns)));
+            ++points[(row << columns) + column];
+          }
+          for (const int n : points) ASSERT_EQ(n, 1) << "pixel " << pixel << ", " << count << " points";
+        }
+      }
+    }
+  }
+}
+
+// Each point alone is anywhere: over many pixels all cells get their share, also those finer than the sequence.
+TEST(ScrambledPoint, IsEvenOverPixels) {
+  for (const std::uint32_t i : {0u, 1u, 2u, 5u, 1000u}) {
+    std::vector<std::uint64_t> coarse(64, 0);
+    std::vector<std::uint64_t> fine(64, 0);
+    for (std::uint32_t y = 0; y < 200; ++y) {
+      for (std::uint32_t x = 0; x < 200; ++x) {
+        const glm::dvec2 p = scrambled_point(i, x, y, 2, 1);
+        ++coarse[8 * bin_of(p.x, 8) + bin_of(p.y, 8)];
+        ++fine[8 * bin_of(p.x * 128.0 - std::floor(p.x * 128.0), 8) + bin_of(p.y * 128.0 - std::floor(p.y * 128.0), 8)];
+      }
+    }
+    EXPECT_LT(chi_square(coarse), chi_square_limit(64)) << i;
+    EXPECT_LT(chi_square(fine), chi_square_limit(64)) << i;
+  }
+}
+
+// Stripes of any period: the error is at most that of random points, by Owen's bound of a factor e of the variance.
+TEST(ScrambledPoint, DoesNotFallIntoStepWithStripes) {
+  constexpr std::uint32_t count = 64;
+  for (double period = 2.0; period < 100.0; period *= 1.07) {
+    double squares = 0.0;
+    for (std::uint32_t pixel = 0; pixel < 400; ++pixel) {
+      double lit = 0.0;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const double at = period * scrambled_point(i, pixel, 0, 2, 1).y;
+        lit += at - std::floor(at) < 0.5 ? 1.0 / count : 0.0;
+      }
+      const double whole = std::floor(period);
+      const double truth = (0.5 * whole + std::min(0.5, period - whole)) / period;
+      squares += (lit - truth) * (lit - truth) / 400.0;
+    }
+    EXPECT_LT(squares, std::numbers::e * 0.25 / count * 1.3) << period;
+  }
+}
+
 TEST(Shifted, WrapsAround) {
   EXPECT_EQ(shifted({0.25, 0.75}, {0.5, 0.5}), glm::dvec2(0.75, 0.25));
   const glm::dvec2 edge = shifted({1.0 - 0x1p-53, 0.5}, {1.0 - 0x1p-53, 0.5});

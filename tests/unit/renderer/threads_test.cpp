@@ -20,6 +20,8 @@ TEST(Threads, DoNotShowInThePicture) {
   settings.effects.ao_samples = 4;
   settings.samples_per_pixel = 2;
   for (const bool two_sets : {false, true}) {
+    settings.max_samples_per_pixel = two_sets ? 0 : 16;
+    settings.pixel_error = 0.05;
     std::vector<std::vector<Sphere>> sets = {halves[0]};
     if (two_sets) sets.push_back(halves[1]);
     const SphereScene scene(sets);
@@ -31,6 +33,7 @@ TEST(Threads, DoNotShowInThePicture) {
       EXPECT_EQ(many.frame.normal, one.frame.normal);
       EXPECT_EQ(many.frame.item, one.frame.item);
       EXPECT_EQ(many.costs.camera.rays, one.costs.camera.rays);
+      EXPECT_EQ(many.costs.pixels_over_error, one.costs.pixels_over_error);
       EXPECT_EQ(many.costs.shadows.rays, one.costs.shadows.rays);
       EXPECT_EQ(many.costs.ambient_occlusion.rays, one.costs.ambient_occlusion.rays);
     }
