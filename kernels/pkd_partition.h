@@ -97,6 +97,7 @@ struct OrderScratch {
   ListedPlace<Key>* places;
   PreferLocal prefer;
   const void* context;
+  bool nearly_ordered = false;  // medians are then searched near the old ones
 };
 
 // Puts `count` items, below 2^32, into the order of a tree within `box`. run_padding scalars behind them can be read.

@@ -18,6 +18,7 @@
 #include "kernels/pkd_traverse.h"
 #include "measure.h"
 #include "particle_builds.h"
+#include "particle_rebuilds.h"
 
 namespace {
 
@@ -245,6 +246,10 @@ void measure_scene(const Options& options, const std::string& name, std::uint64_
   for (const auto& [metric, value] :
        bench::measure_builds({options.quick, options.repetitions}, scene, teams, report.context()["builds"]))
     worst.note(metric, value);
+  if (name == "uniform")
+    for (const auto& [metric, value] : bench::measure_displaced_rebuild({options.quick, options.repetitions}, scene,
+                                                                        teams.back(), report.context()["rebuilds"]))
+      worst.note(metric, value);
   if (options.builds_only) return;
 
   const auto note_most = [&most](const std::string& metric, double value) {
@@ -307,6 +312,10 @@ int main(int argc, char** argv) {
   std::map<std::string, double> most;
   for (const std::uint64_t count : options.counts)
     for (const std::string& name : options.scenes) measure_scene(options, name, count, teams, worst, most, report);
+
+  for (const auto& [metric, value] :
+       bench::measure_melt_rebuild({options.quick, options.repetitions}, teams.back(), report.context()["rebuilds"]))
+    worst.note(metric, value);
 
   std::printf("\n");
   for (const auto& values : {most, worst.values})

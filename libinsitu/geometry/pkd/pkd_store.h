@@ -200,7 +200,8 @@ class ColumnsStore {
         const std::size_t part = std::min(bytes_per_item(), column.bytes - done);
         for_size(part, [&](auto size) {
           const std::size_t length = size == 0 ? part : size;
-          for (std::size_t i = 0; i < n; ++i) std::memcpy(bytes + i * length, column.at(begin + i) + done, length);
+          for (std::size_t i = 0; i < n; ++i)
+            if (items[i].local != i) std::memcpy(bytes + i * length, column.at(begin + i) + done, length);
           for (std::size_t i = 0; i < n; ++i)
             if (items[i].local != i) std::memcpy(column.at(begin + i) + done, bytes + items[i].local * length, length);
         });
