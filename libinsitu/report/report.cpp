@@ -67,6 +67,9 @@ std::string to_json_line(const StepReport& report) {
                      member("owned", scalar(report.bytes_owned)), member("peak", scalar(report.bytes_peak))})),
       member("items",
              object({member("total", scalar(report.items_total)), member("skipped", scalar(report.items_skipped))})),
+      member("trees",
+             object({member("built", scalar(report.trees_built)), member("repaired", scalar(report.trees_repaired)),
+                     member("reused", scalar(report.trees_reused)), member("moved", scalar(report.items_moved))})),
       member("effects", list_of(report.effects)),
       member("warnings", strings(report.warnings)),
       member("status", scalar(report_status_name(report.status)))};

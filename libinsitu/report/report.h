@@ -34,6 +34,11 @@ struct StepReport {
   uint64_t items_total = 0;
   uint64_t items_skipped = 0;
 
+  uint64_t trees_built = 0;
+  uint64_t trees_repaired = 0;
+  uint64_t trees_reused = 0;
+  uint64_t items_moved = 0;
+
   std::vector<EffectCost> effects;
   std::vector<std::string> warnings;
 

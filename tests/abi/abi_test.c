@@ -139,7 +139,7 @@ static void check_structs(void) {
   OFFSET(insitu_image_desc, channels, 16);
   OFFSET(insitu_image_desc, reserved, 20);
 
-  SIZE(insitu_stats, 104);
+  SIZE(insitu_stats, 136);
   OFFSET(insitu_stats, struct_size, 0);
   OFFSET(insitu_stats, reserved, 4);
   OFFSET(insitu_stats, step, 8);
@@ -154,6 +154,10 @@ static void check_structs(void) {
   OFFSET(insitu_stats, render_s, 80);
   OFFSET(insitu_stats, write_s, 88);
   OFFSET(insitu_stats, total_s, 96);
+  OFFSET(insitu_stats, trees_built, 104);
+  OFFSET(insitu_stats, trees_repaired, 112);
+  OFFSET(insitu_stats, trees_reused, 120);
+  OFFSET(insitu_stats, items_moved, 128);
 }
 
 static void check_constants(void) {

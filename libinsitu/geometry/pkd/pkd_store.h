@@ -117,7 +117,8 @@ class PackedStore {
   bool prefer(std::uint64_t a, std::uint64_t b) const { return prefer_item(tree_, a, b); }
 
   void apply(std::uint64_t begin, const PkdItem<K>* items, std::size_t n, std::byte*) {
-    for (std::size_t i = 0; i < n; ++i) std::memcpy(records_ + begin + i, items[i].x, sizeof items[i].x);
+    for (std::size_t i = 0; i < n; ++i)
+      if (items[i].local != i) std::memcpy(records_ + begin + i, items[i].x, sizeof items[i].x);
   }
 
  private:

@@ -395,6 +395,10 @@ typedef struct insitu_stats {
   double render_s;
   double write_s;
   double total_s; /* inside of library calls, from step_begin to step_end */
+  uint64_t trees_built;    /* trees made in this step from particles in no useful order */
+  uint64_t trees_repaired; /* from particles nearly in the order of the step before */
+  uint64_t trees_reused;   /* their particles were in order already */
+  uint64_t items_moved;    /* moves of particles, or of entries of an index, that this took */
 } insitu_stats;
 
 INSITU_API insitu_status insitu_stats_get(insitu_context context, insitu_stats* out);

@@ -29,6 +29,10 @@ StepReport full_report() {
   report.bytes_peak = 8192;
   report.items_total = 10;
   report.items_skipped = 3;
+  report.trees_built = 1;
+  report.trees_repaired = 2;
+  report.trees_reused = 4;
+  report.items_moved = 7;
   report.effects = {{"camera", 1000000, 0.75}, {"ambient_occlusion", 8000000, 0.5}};
   report.warnings = {"3 particles were skipped: position is not finite"};
   report.status = INSITU_ERROR_IO;
@@ -41,6 +45,7 @@ TEST(Report, WholeLine) {
             R"({"step":18446744073709551615,"time":0.1,"images":["frame_000042.png","frame \"42\".exr"],)"
             R"("seconds":{"build":0.5,"render":1.25,"write":0.0625,"total":2.0},)"
             R"("bytes":{"borrowed":240,"copied":16,"owned":4096,"peak":8192},"items":{"total":10,"skipped":3},)"
+            R"("trees":{"built":1,"repaired":2,"reused":4,"moved":7},)"
             R"("effects":[{"name":"camera","rays":1000000,"seconds":0.75},)"
             R"({"name":"ambient_occlusion","rays":8000000,"seconds":0.5}],)"
             R"("warnings":["3 particles were skipped: position is not finite"],"status":"io","error":"disk full"})");
@@ -50,6 +55,7 @@ TEST(Report, EmptyStep) {
   EXPECT_EQ(to_json_line(StepReport()),
             R"({"step":0,"time":0.0,"images":[],"seconds":{"build":0.0,"render":0.0,"write":0.0,"total":0.0},)"
             R"("bytes":{"borrowed":0,"copied":0,"owned":0,"peak":0},"items":{"total":0,"skipped":0},)"
+            R"("trees":{"built":0,"repaired":0,"reused":0,"moved":0},)"
             R"("effects":[],"warnings":[],"status":"ok"})");
 }
 
