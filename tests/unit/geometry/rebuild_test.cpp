@@ -199,8 +199,10 @@ class Rebuild : public ::testing::TestWithParam<Case> {
 TEST_P(Rebuild, AfterEveryDisplacement) {
   std::uint64_t seed = 0;
   for (const Shape shape : {Shape::uniform, Shape::clustered, Shape::planar, Shape::grid, Shape::coincident_groups})
-    for (const std::uint64_t count : {3000u, 150000u}) {
-      if (count > 10000 && shape != Shape::uniform && shape != Shape::grid) continue;
+    for (const std::uint64_t count : {3000u, 140000u}) {
+      // Above a block: the path by runs, for a layout of every kind.
+      const bool is_short = GetParam().memory == Memory::records_f32 || GetParam().memory == Memory::columns_f64;
+      if (count > 10000 && (!is_short || shape != Shape::uniform)) continue;
       Host host(GetParam().memory, unit_cloud(shape, count, ++seed));
       Particles particles("particles", GetParam().order, false);
       EXPECT_EQ(step(particles, host, "first").how, How::built);
@@ -220,6 +222,60 @@ TEST_P(Rebuild, AfterEveryDisplacement) {
         }
       }
     }
+}
+
+// Another number of particles, other radii, some that cannot be drawn, some that jump, a box that grows.
+TEST_P(Rebuild, AfterChangesOfAnotherKind) {
+  Particles particles("particles", GetParam().order, false);
+  for (const std::uint64_t count : {4000u, 3500u, 4000u, 0u, 1u, 4000u}) {
+    Host host(GetParam().memory, unit_cloud(Shape::uniform, count, 1));
+    step(particles, host, "another count");
+  }
+  Host host(GetParam().memory, unit_cloud(Shape::uniform, 4000, 1));
+  CounterRandom random(5);
+  for (int turn = 0; turn < 12; ++turn) {
+    for (int jump = 0; jump < (turn % 3 == 0 ? 1 : 300); ++jump) {
+      const std::uint64_t who = random.below(host.count());
+      for (std::uint32_t c = 0; c < 3; ++c) host.set(who, c, random.between(-0.5, 0.5));
+    }
+    if (turn == 6)
+      for (std::uint64_t i = 0; i < host.count(); ++i) host.set(i, 1, 1.5 * host.get(i, 1));
+    step(particles, host, "jumps");
+  }
+  const std::vector<std::array<double, 3>> given = host.by_id();
+  ParticleArrays arrays = host.arrays();
+  std::vector<float> radius(host.count(), 0.02f);
+  for (std::size_t i = 0; i < radius.size(); i += 9) radius[i] = i % 2 == 0 ? 0.0f : 0.05f;
+  arrays.radius = view_of(radius, 1, INSITU_USE_RADIUS);
+  particles.bind(std::move(arrays));
+  particles.build(budget_);
+  EXPECT_EQ(particles.drawn_count(), host.count() - (radius.size() / 9 + 2) / 2);
+  EXPECT_EQ(kernels::find_broken_invariant(particles.tree()), kernels::no_item);
+  host.expect_whole(given);
+  step(particles, host, "all of them again");
+}
+
+// A repair does the same with any number of threads.
+TEST(RebuildThreads, DoNotShow) {
+  std::vector<std::vector<std::uint64_t>> orders;
+  for (const unsigned threads : {1u, 2u, 8u}) {
+    Workers workers(threads);
+    Host host(Memory::records_f32, unit_cloud(Shape::uniform, 200000, 9));
+    Particles particles("particles", ParticleOrder::permute, false);
+    Budget budget(0);
+    CounterRandom random(10);
+    for (int step = 0; step < 3; ++step) {
+      particles.bind(host.arrays());
+      workers.run([&] { particles.build(budget); });
+      EXPECT_EQ(particles.how_built().how, step == 0 ? How::built : How::repaired);
+      if (step < 2) displace(host, 0.02, random);
+    }
+    EXPECT_EQ(kernels::find_broken_invariant(particles.tree()), kernels::no_item);
+    orders.emplace_back();
+    for (std::uint64_t i = 0; i < host.count(); ++i) orders.back().push_back(host.id(i));
+    EXPECT_EQ(orders.back(), orders.front()) << threads;
+    EXPECT_EQ(budget.owned(), 0u);
+  }
 }
 
 std::string name_of(const Case& c) {
