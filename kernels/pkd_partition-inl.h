@@ -26,17 +26,34 @@ using KeyTag = hn::CappedTag<Key, 16>;
 template <int components, class Key>
 HWY_INLINE hn::VFromD<KeyTag<Key>> LoadKeys(const Key* first) {
   const KeyTag<Key> d;
+#if HWY_TARGET == HWY_SCALAR
+  return hn::LoadU(d, first);  // one lane: the first scalar is the key
+#else
   if constexpr (components == 1) {
     return hn::LoadU(d, first);
   } else {
-    hn::VFromD<KeyTag<Key>> v[4];
+    const std::size_t lanes = hn::Lanes(d);
+    const auto v0 = hn::LoadU(d, first);
+    const auto v1 = hn::LoadU(d, first + lanes);
+    const auto v2 = hn::LoadU(d, first + 2 * lanes);
     if constexpr (components == 3) {
-      hn::LoadInterleaved3(d, first, v[0], v[1], v[2]);
+      // Key k is scalar 3k of the three vectors.
+      const hn::RebindToUnsigned<KeyTag<Key>> du;
+      const auto iota = hn::Iota(du, ListedPlace<Key>{0});
+      const auto scalar = hn::Add(iota, hn::Add(iota, iota));
+      const auto n = static_cast<ListedPlace<Key>>(lanes);
+      const auto lane = hn::IndicesFromVec(d, hn::And(scalar, hn::Set(du, static_cast<ListedPlace<Key>>(n - 1))));
+      const auto in_v0 = hn::RebindMask(d, hn::Lt(scalar, hn::Set(du, n)));
+      const auto in_v01 = hn::RebindMask(d, hn::Lt(scalar, hn::Set(du, static_cast<ListedPlace<Key>>(2 * n))));
+      return hn::IfThenElse(in_v0, hn::TableLookupLanes(v0, lane),
+                            hn::IfThenElse(in_v01, hn::TableLookupLanes(v1, lane), hn::TableLookupLanes(v2, lane)));
     } else {
-      hn::LoadInterleaved4(d, first, v[0], v[1], v[2], v[3]);
+      // Every fourth scalar: the even ones of the even ones.
+      const auto v3 = hn::LoadU(d, first + 3 * lanes);
+      return hn::ConcatEven(d, hn::ConcatEven(d, v3, v2), hn::ConcatEven(d, v1, v0));
     }
-    return v[0];
   }
+#endif
 }
 
 // body(i, keys, valid): vector by vector, `valid` marks the lanes that are there.

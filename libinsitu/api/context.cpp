@@ -391,6 +391,13 @@ void Context::build(GeometryObject& geometry) {
   const std::uint64_t skipped = items - particles.drawn_count();
   report_.items_total += items;
   report_.items_skipped += skipped;
+  const PkdBuilt& made = particles.how_built();
+  report_.trees_built += made.how == PkdBuilt::How::built ? 1 : 0;
+  report_.trees_repaired += made.how == PkdBuilt::How::repaired ? 1 : 0;
+  report_.trees_reused += made.how == PkdBuilt::How::reused ? 1 : 0;
+  report_.items_moved += made.moved;
+  report_.treelets += particles.treelets().count;
+  report_.treelet_bytes += particles.treelet_bytes();
   report_.bytes_borrowed += particles.borrowed_bytes();
   report_.bytes_copied += particles.copied_bytes();
   if (skipped != 0)
@@ -475,6 +482,12 @@ insitu_stats Context::stats() const {
   stats.peak_bytes = budget_.peak();
   stats.items = report_.items_total;
   stats.items_skipped = report_.items_skipped;
+  stats.trees_built = report_.trees_built;
+  stats.trees_repaired = report_.trees_repaired;
+  stats.trees_reused = report_.trees_reused;
+  stats.items_moved = report_.items_moved;
+  stats.treelets = report_.treelets;
+  stats.treelet_bytes = report_.treelet_bytes;
   stats.rays = costs_.camera.rays + costs_.shadows.rays + costs_.ambient_occlusion.rays;
   stats.build_s = report_.build_s;
   stats.render_s = report_.render_s;

@@ -74,6 +74,9 @@ void read_radii(const insitu_particles_desc& desc, Reader& reader, ParticleArray
   if (!(arrays.radius_default >= 0.0 && std::isfinite(arrays.radius_default)))
     reader.refuse("radius_default is negative or not finite");
   arrays.radius_scale = desc.radius_scale == 0.0 ? 1.0 : desc.radius_scale;
+  arrays.treelet_share = desc.treelet_share;
+  if (!(arrays.treelet_share >= 0.0 && std::isfinite(arrays.treelet_share)))
+    reader.refuse("treelet_share is negative or not finite");
   if (!(arrays.radius_scale > 0.0 && std::isfinite(arrays.radius_scale)))
     reader.refuse("radius_scale is negative or not finite");
 }

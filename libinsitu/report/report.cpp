@@ -69,6 +69,11 @@ std::string to_json_line(const StepReport& report) {
              object({member("total", scalar(report.items_total)), member("skipped", scalar(report.items_skipped))})),
       member("pixels", object({member("total", scalar(report.pixels)), member("samples", scalar(report.samples)),
                                member("over_error", scalar(report.pixels_over_error))})),
+      member(
+          "trees",
+          object({member("built", scalar(report.trees_built)), member("repaired", scalar(report.trees_repaired)),
+                  member("reused", scalar(report.trees_reused)), member("moved", scalar(report.items_moved)),
+                  member("treelets", scalar(report.treelets)), member("treelet_bytes", scalar(report.treelet_bytes))})),
       member("effects", list_of(report.effects)),
       member("warnings", strings(report.warnings)),
       member("status", scalar(report_status_name(report.status)))};

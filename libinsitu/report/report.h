@@ -37,6 +37,12 @@ struct StepReport {
   uint64_t pixels = 0;             // rendered
   uint64_t samples = 0;            // camera rays through them
   uint64_t pixels_over_error = 0;  // of adaptive images: at their most samples, and still above the tolerated error
+  uint64_t trees_built = 0;
+  uint64_t trees_repaired = 0;
+  uint64_t trees_reused = 0;
+  uint64_t items_moved = 0;
+  uint64_t treelets = 0;
+  uint64_t treelet_bytes = 0;
 
   std::vector<EffectCost> effects;
   std::vector<std::string> warnings;

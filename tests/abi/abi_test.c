@@ -59,7 +59,7 @@ static void check_structs(void) {
   OFFSET(insitu_attribute, name, 0);
   OFFSET(insitu_attribute, values, 8);
 
-  SIZE(insitu_particles_desc, 144);
+  SIZE(insitu_particles_desc, 152);
   OFFSET(insitu_particles_desc, struct_size, 0);
   OFFSET(insitu_particles_desc, order, 4);
   OFFSET(insitu_particles_desc, name, 8);
@@ -78,6 +78,7 @@ static void check_structs(void) {
   OFFSET(insitu_particles_desc, payload_count, 128);
   OFFSET(insitu_particles_desc, flags, 136);
   OFFSET(insitu_particles_desc, reserved, 140);
+  OFFSET(insitu_particles_desc, treelet_share, 144);
 
   SIZE(insitu_style, 80);
   OFFSET(insitu_style, struct_size, 0);
@@ -142,7 +143,7 @@ static void check_structs(void) {
   OFFSET(insitu_image_desc, reserved_2, 28);
   OFFSET(insitu_image_desc, pixel_error, 32);
 
-  SIZE(insitu_stats, 128);
+  SIZE(insitu_stats, 176);
   OFFSET(insitu_stats, struct_size, 0);
   OFFSET(insitu_stats, reserved, 4);
   OFFSET(insitu_stats, step, 8);
@@ -160,6 +161,12 @@ static void check_structs(void) {
   OFFSET(insitu_stats, pixels, 104);
   OFFSET(insitu_stats, samples, 112);
   OFFSET(insitu_stats, pixels_over_error, 120);
+  OFFSET(insitu_stats, trees_built, 128);
+  OFFSET(insitu_stats, trees_repaired, 136);
+  OFFSET(insitu_stats, trees_reused, 144);
+  OFFSET(insitu_stats, items_moved, 152);
+  OFFSET(insitu_stats, treelets, 160);
+  OFFSET(insitu_stats, treelet_bytes, 168);
 }
 
 static void check_constants(void) {

@@ -220,6 +220,32 @@ TEST(Steps, OneLineOfTheReportForEach) {
   EXPECT_EQ(last["images"][0], folder.file("p_" + std::to_string(steps) + ".png"));
 }
 
+// How the tree of each step was made: anew, from the order of the step before, or without moving a particle.
+TEST(Steps, TreesAreReusedAndRepaired) {
+  for (const std::uint32_t order : {INSITU_ORDER_INDEX, INSITU_ORDER_PERMUTE, INSITU_ORDER_COPY}) {
+    testing::Studio studio(order);
+    testing::Cloud cloud(5000);
+    cloud.position.flags = order == INSITU_ORDER_PERMUTE ? std::uint32_t{INSITU_ARRAY_PERMUTABLE} : 0u;
+    const auto step = [&](std::uint64_t number) {
+      EXPECT_TRUE(works(studio.context, studio.step(cloud.desc, number)));
+      return studio.context.stats();
+    };
+    insitu_stats stats = step(1);
+    EXPECT_EQ(stats.trees_built, 1u);
+    EXPECT_EQ(stats.trees_repaired + stats.trees_reused, 0u);
+    EXPECT_GT(stats.items_moved, 2500u);
+    stats = step(2);
+    EXPECT_EQ(stats.trees_reused, 1u);
+    EXPECT_EQ(stats.items_moved, 0u);
+    for (std::size_t i = 0; i < cloud.xyz.size(); i += 7) cloud.xyz[i] += i % 2 == 0 ? 1e-3 : -1e-3;
+    stats = step(3);
+    EXPECT_EQ(stats.trees_repaired, 1u);
+    EXPECT_EQ(stats.trees_built + stats.trees_reused, 0u);
+    EXPECT_GT(stats.items_moved, 0u);
+    EXPECT_LT(stats.items_moved, 2500u);
+  }
+}
+
 // Counters of skipped particles, of rays by effect, and of bytes, in a step that has them all.
 TEST(Steps, WhatTheCountersCount) {
   testing::Studio studio(INSITU_ORDER_COPY);

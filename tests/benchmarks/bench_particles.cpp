@@ -10,6 +10,7 @@
 #include "measure.h"
 #include "particle_builds.h"
 #include "particle_frames.h"
+#include "particle_rebuilds.h"
 
 int main(int argc, char** argv) {
   CLI::App app("The P-k-d tree beside Embree, on the same particles and rays");
@@ -48,16 +49,22 @@ int main(int argc, char** argv) {
   teams.emplace_back(1);
   teams.emplace_back(2);
   bench::FrameMetrics metrics;
+  const bench::BuildOptions builds{frames.quick, frames.repetitions};
+  const auto note = [&metrics](const std::map<std::string, double>& speeds) {
+    for (const auto& [metric, value] : speeds) metrics.note_speed(metric, value);
+  };
   for (const std::uint64_t count : counts) {
     for (const std::string& name : scenes) {
       const bench::ParticleScene scene = bench::make_scene(name, count);
-      if (!frames_only)
-        for (const auto& [metric, value] :
-             measure_builds({frames.quick, frames.repetitions}, scene, teams, report.context()["builds"]))
-          metrics.note_speed(metric, value);
+      if (!frames_only) {
+        note(measure_builds(builds, scene, teams, report.context()["builds"]));
+        if (name == "uniform")
+          note(measure_displaced_rebuild(builds, scene, teams.back(), report.context()["rebuilds"]));
+      }
       if (!builds_only) measure_frames(frames, scene, teams, metrics, report.context()["frames"]);
     }
   }
+  if (!frames_only) note(measure_melt_rebuild(builds, teams.back(), report.context()["rebuilds"]));
 
   std::printf("\n");
   for (const auto& values : {metrics.most, metrics.worst})

@@ -9,7 +9,6 @@
 
 #include "core/error.h"
 #include "geometry/particles/particle_scan.h"
-#include "geometry/pkd/pkd_build.h"
 #include "geometry/pkd/treelet_build.h"
 #include "kernels/pkd_traverse.h"
 #include "kernels/treelet_traverse.h"
@@ -40,6 +39,29 @@ double automatic_radius(const ScanResult& scan, double without_extent) {
   double radius = 0.5 * std::pow(static_cast<double>(scan.drawn), -root);
   for (int i = 0; i < dimensions; ++i) radius *= std::pow(sides[i], root);
   return radius;
+}
+
+constexpr double root_margin = 1.0 / 128;  // of each side, at both of its ends
+constexpr double most_root_excess = 3.0 * root_margin;
+
+kernels::PkdBox<double> root_around(const ScanResult& scan) {
+  kernels::PkdBox<double> root;
+  for (int c = 0; c < 3; ++c) {
+    // None where there is no extent: a box without any tells that all particles coincide.
+    const double margin = scan.drawn == 0 ? 0.0 : root_margin * (scan.upper[c] - scan.lower[c]);
+    root.lower[c] = scan.lower[c] - margin;
+    root.upper[c] = scan.upper[c] + margin;
+  }
+  return root;
+}
+
+bool is_good_root(const kernels::PkdBox<double>& root, const ScanResult& scan) {
+  for (int c = 0; c < 3; ++c) {
+    const double side = scan.upper[c] - scan.lower[c];
+    if (!(root.lower[c] <= scan.lower[c] && root.upper[c] >= scan.upper[c])) return false;
+    if (!(root.upper[c] - root.lower[c] <= (1.0 + most_root_excess) * side)) return false;
+  }
+  return true;
 }
 
 RadiusView radius_view(const ParticleArrays& arrays) {
@@ -81,6 +103,7 @@ void Particles::bind(ParticleArrays arrays) {
 
 void Particles::release() {
   built_ = false;
+  how_built_ = {};
   arrays_.reset();
   moved_.clear();
   tree_ = {};
@@ -101,14 +124,24 @@ void Particles::build(Budget& budget) {
     tree_.radius.uniform = automatic_radius(scan, 1.0 / arrays.position_scale) * arrays.radius_scale;
     scan.radius_max = tree_.radius.uniform;
   }
-  std::copy_n(scan.lower, 3, tree_.lower);
-  std::copy_n(scan.upper, 3, tree_.upper);
+  std::copy_n(scan.lower, 3, lower_);
+  std::copy_n(scan.upper, 3, upper_);
+  if (!is_good_root(root_, scan)) root_ = root_around(scan);
+  std::copy_n(root_.lower, 3, tree_.lower);
+  std::copy_n(root_.upper, 3, tree_.upper);
   tree_.radius_max = scan.radius_max;
   tree_.count = scan.drawn;
   plan_treelets(budget);
   switch (order_) {
     case ParticleOrder::index:
-      build_over_index(budget);
+      tree_.position_by_place = false;
+      if (tree_.position.count <= most_for_32_bits) {
+        index64_.clear();
+        build_over_index(budget, index32_);
+      } else {
+        index32_.clear();
+        build_over_index(budget, index64_);
+      }
       break;
     case ParticleOrder::permute:
       build_in_place(budget);
@@ -167,21 +200,29 @@ void list_drawable(const PkdTree& tree, Index* index) {
 
 }  // namespace
 
-void Particles::build_over_index(Budget& budget) {
-  tree_.position_by_place = false;
-  if (tree_.position.count <= most_for_32_bits) {
-    index64_.clear();
-    index32_.reset(budget, tree_.count, "the index of the particles");
-    list_drawable(tree_, index32_.data());
-    tree_.index32 = index32_.data();
-    build_index(tree_, index32_.data());
-  } else {
-    index32_.clear();
-    index64_.reset(budget, tree_.count, "the index of the particles");
-    list_drawable(tree_, index64_.data());
-    tree_.index64 = index64_.data();
-    build_index(tree_, index64_.data());
+// As the last step left them, when that was nearly the order of this step's tree; otherwise in the order of the arrays.
+template <class Index>
+void Particles::list_items(Index* index) {
+  const std::uint64_t listed = std::exchange(listed_items_, 0);  // until the build has succeeded
+  if (listed == tree_.count && tree_.count == tree_.position.count) {
+    PkdTree last = tree_;
+    last.position_by_place = false;
+    if constexpr (sizeof(Index) == 4) last.index32 = index;
+    if constexpr (sizeof(Index) == 8) last.index64 = index;
+    if (is_nearly_ordered(last)) return;
   }
+  list_drawable(tree_, index);
+}
+
+template <class Index>
+void Particles::build_over_index(Budget& budget, BudgetVector<Index>& index) {
+  if (index.size() != tree_.count) listed_items_ = 0;
+  index.reset(budget, tree_.count, "the index of the particles");
+  list_items(index.data());
+  if constexpr (sizeof(Index) == 4) tree_.index32 = index.data();
+  if constexpr (sizeof(Index) == 8) tree_.index64 = index.data();
+  how_built_ = build_index(tree_, index.data());
+  listed_items_ = tree_.count == tree_.position.count ? tree_.count : 0;
 }
 
 void Particles::build_in_place(Budget& budget) {
@@ -214,7 +255,7 @@ void Particles::build_in_place(Budget& budget) {
       }
     }
   }
-  build_columns(tree_, columns);
+  how_built_ = build_columns(tree_, columns);
 }
 
 void Particles::build_copy(Budget& budget) {
@@ -223,9 +264,10 @@ void Particles::build_copy(Budget& budget) {
                 name_ + ": INSITU_ORDER_COPY holds at most 2^32 particles; use another order");
   const std::size_t size = kernels::size_of(tree_.position.type);
   index64_.clear();
+  if (index32_.size() != tree_.count) listed_items_ = 0;
   index32_.reset(budget, tree_.count, "the index of the particles");
   copy_.reset(budget, tree_.count * 3 * size, "the copy of the positions");
-  list_drawable(tree_, index32_.data());
+  list_items(index32_.data());
   const ArrayView source = tree_.position;
   std::byte* copy = copy_.data();
   tbb::parallel_for(tbb::blocked_range<std::uint64_t>(0, tree_.count, 1 << 14), [&](const auto& range) {
@@ -239,9 +281,11 @@ void Particles::build_copy(Budget& budget) {
   position.stride = static_cast<std::ptrdiff_t>(3 * size);
   for (std::uint32_t c = 0; c < 3; ++c) position.base[c] = copy + c * size;
   tree_.index32 = index32_.data();
-  build_columns(tree_,
-                {{copy, position.stride, 3 * size, false},
-                 {reinterpret_cast<std::byte*>(index32_.data()), sizeof(std::uint32_t), sizeof(std::uint32_t), false}});
+  const std::uint64_t items = source.count;
+  how_built_ = build_columns(
+      tree_, {{copy, position.stride, 3 * size, false},
+              {reinterpret_cast<std::byte*>(index32_.data()), sizeof(std::uint32_t), sizeof(std::uint32_t), false}});
+  listed_items_ = tree_.count == items ? items : 0;
 }
 
 // Equal distance means, but for chance, equal centres. Then radius and attributes decide, so that the picture is the
@@ -298,8 +342,8 @@ void Particles::bounds(double lower[3], double upper[3]) const {
     upper[c] = -infinity;
     if (drawn_count() == 0) continue;
     const double scale = arrays_->position_scale;
-    lower[c] = arrays_->position_origin[c] + (tree_.lower[c] - tree_.radius_max) * scale;
-    upper[c] = arrays_->position_origin[c] + (tree_.upper[c] + tree_.radius_max) * scale;
+    lower[c] = arrays_->position_origin[c] + (lower_[c] - tree_.radius_max) * scale;
+    upper[c] = arrays_->position_origin[c] + (upper_[c] + tree_.radius_max) * scale;
   }
 }
 

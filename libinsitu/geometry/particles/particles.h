@@ -8,6 +8,7 @@
 #include "core/budget.h"
 #include "core/workers.h"
 #include "geometry/array_view.h"
+#include "geometry/pkd/pkd_build.h"
 #include "kernels/pkd_tree.h"
 #include "kernels/ray.h"
 #include "kernels/treelets.h"
@@ -60,6 +61,8 @@ class Particles {
   void release();
 
   std::uint64_t item_count() const { return arrays_ ? arrays_->position.count : 0; }
+  // How the tree of this step was made, and how many particles that moved.
+  const PkdBuilt& how_built() const { return how_built_; }
   std::uint64_t drawn_count() const { return built_ ? tree_.count : 0; }
   std::uint64_t borrowed_bytes() const;
   std::uint64_t copied_bytes() const { return copy_.bytes(); }
@@ -95,7 +98,8 @@ class Particles {
   const kernels::Treelets& treelets() const { return treelets_; }
 
  private:
-  void build_over_index(Budget& budget);
+  template <class Index>
+  void build_over_index(Budget& budget, BudgetVector<Index>& index);
   void build_in_place(Budget& budget);
   void build_copy(Budget& budget);
   // Settled before the tree, which has to be as fine as its treelets; their boxes are computed after it.
@@ -103,14 +107,24 @@ class Particles {
   void add_treelets(Budget& budget);
   void trace_first_hits(const kernels::Ray* rays, kernels::Hit* hits, std::size_t count) const;
   void trace_any_hits(const kernels::Ray* rays, std::uint8_t* occluded, std::size_t count) const;
+  template <class Index>
+  void list_items(Index* index);
   static bool prefer(const void* self, std::uint64_t a, std::uint64_t b);
 
   std::string name_;
   ParticleOrder order_;
   bool keep_permutation_;
   bool built_ = false;
+  // The index lists every item from 0 to this, in the order of the last step: a good order to start from.
+  std::uint64_t listed_items_ = 0;
+  PkdBuilt how_built_;
   std::optional<ParticleArrays> arrays_;
   ColumnSet moved_;
+  // Bounds of the drawn centres. The box of the tree is a little larger and stays while they fit: with the longest side
+  // another one, or a plane moved, hardly a particle would be in place.
+  double lower_[3] = {};
+  double upper_[3] = {};
+  kernels::PkdBox<double> root_ = {{1.0, 1.0, 1.0}, {-1.0, -1.0, -1.0}};
   kernels::PkdTree tree_;  // in the space of the arrays: for integer positions, the lattice
   // Place in the tree -> item; with ParticleOrder::permute and on request: place now -> place when the step began.
   BudgetVector<std::uint32_t> index32_;

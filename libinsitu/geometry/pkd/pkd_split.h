@@ -4,6 +4,7 @@
 
 #include <oneapi/tbb/parallel_for.h>
 
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -202,15 +203,16 @@ class MedianSearch {
 
 // exchange_pairs() over lists of ranges. What is left to be looked at stays in the lists.
 template <class Store>
-void exchange_lists(Store& store, std::vector<kernels::PlaceRange>& a, kernels::Relation relation_a,
-                    std::vector<kernels::PlaceRange>& b, kernels::Relation relation_b, int axis,
-                    typename Store::Key key) {
+std::uint64_t exchange_lists(Store& store, std::vector<kernels::PlaceRange>& a, kernels::Relation relation_a,
+                             std::vector<kernels::PlaceRange>& b, kernels::Relation relation_b, int axis,
+                             typename Store::Key key) {
+  std::uint64_t pairs = 0;
   std::size_t i = 0;
   std::size_t j = 0;
   while (i < a.size() && j < b.size()) {
     kernels::MisplacedCursor<Store> one(store, a[i], axis, relation_a, key);
     kernels::MisplacedCursor<Store> other(store, b[j], axis, relation_b, key);
-    kernels::exchange_pairs(store, one, other);
+    pairs += kernels::exchange_pairs(store, one, other);
     const bool more_of_one = one.fill();
     a[i] = one.rest();
     if (!more_of_one) ++i;
@@ -220,45 +222,57 @@ void exchange_lists(Store& store, std::vector<kernels::PlaceRange>& a, kernels::
   }
   a.erase(a.begin(), a.begin() + static_cast<std::ptrdiff_t>(i));
   b.erase(b.begin(), b.begin() + static_cast<std::ptrdiff_t>(j));
+  return pairs;
+}
+
+// The end of an exchange: `above` and `below` are the parts of the two sides that may hold misplaced particles. With
+// equal keys one of them may run out first, as in kernels::exchange_sides(). Returns how many pairs changed sides.
+template <class Store>
+std::uint64_t exchange_rest(Store& store, std::vector<kernels::PlaceRange>& above,
+                            std::vector<kernels::PlaceRange>& below, kernels::PlaceRange left,
+                            kernels::PlaceRange right, int axis, typename Store::Key median) {
+  using kernels::Relation;
+  std::uint64_t pairs = exchange_lists(store, above, Relation::greater, below, Relation::less, axis, median);
+  std::vector<kernels::PlaceRange> partner = {right};
+  pairs += exchange_lists(store, above, Relation::greater, partner, Relation::not_greater, axis, median);
+  partner = {left};
+  return pairs + exchange_lists(store, below, Relation::less, partner, Relation::not_less, axis, median);
 }
 
 // As kernels::exchange_sides(), with several threads: chunks of the two sides are dealt with in pairs, then what is
 // left over of all of them.
 template <class Store>
-void exchange_sides_parallel(Store& store, kernels::PlaceRange left, kernels::PlaceRange right, int axis,
-                             typename Store::Key median) {
+std::uint64_t exchange_sides_parallel(Store& store, kernels::PlaceRange left, kernels::PlaceRange right, int axis,
+                                      typename Store::Key median) {
   using kernels::Relation;
   const std::uint64_t chunks = chunks_of(left.end - left.begin);
-  if (chunks <= 1) {
-    kernels::exchange_sides(store, left, right, axis, median);
-    return;
-  }
+  if (chunks <= 1) return kernels::exchange_sides(store, left, right, axis, median);
+  std::atomic<std::uint64_t> pairs{0};
   std::vector<kernels::PlaceRange> above(chunks);
   std::vector<kernels::PlaceRange> below(chunks);
   for_chunks(chunks, [&](std::uint64_t chunk) {
     kernels::MisplacedCursor<Store> l(store, chunk_of(left, chunk, chunks), axis, Relation::greater, median);
     kernels::MisplacedCursor<Store> r(store, chunk_of(right, chunk, chunks), axis, Relation::less, median);
-    kernels::exchange_pairs(store, l, r);
+    pairs += kernels::exchange_pairs(store, l, r);
     // Past all that is in place already, while there are many threads.
     l.fill();
     r.fill();
     above[chunk] = l.rest();
     below[chunk] = r.rest();
   });
-  exchange_lists(store, above, Relation::greater, below, Relation::less, axis, median);
-  std::vector<kernels::PlaceRange> partner = {right};
-  exchange_lists(store, above, Relation::greater, partner, Relation::not_greater, axis, median);
-  partner = {left};
-  exchange_lists(store, below, Relation::less, partner, Relation::not_less, axis, median);
+  return pairs + exchange_rest(store, above, below, left, right, axis, median);
 }
 
 // Puts a particle with the median key to `mid`, keys that are not larger before it and keys that are not smaller behind
-// it; returns the median.
+// it; returns the median. `moved` grows by the number of particles that changed their place.
 template <class Store>
-typename Store::Key split_range(Store& store, kernels::PlaceRange range, std::uint64_t mid, int axis) {
+typename Store::Key split_range(Store& store, kernels::PlaceRange range, std::uint64_t mid, int axis,
+                                std::atomic<std::uint64_t>& moved) {
   const auto median = MedianSearch<Store>(store, range, mid, axis).find();
   store.swap(mid, median.place);
-  exchange_sides_parallel(store, {range.begin, mid}, {mid + 1, range.end}, axis, median.key);
+  const std::uint64_t pairs =
+      exchange_sides_parallel(store, {range.begin, mid}, {mid + 1, range.end}, axis, median.key);
+  moved += 2 * (pairs + (mid != median.place ? 1 : 0));
   return median.key;
 }
 

@@ -117,7 +117,8 @@ class PackedStore {
   bool prefer(std::uint64_t a, std::uint64_t b) const { return prefer_item(tree_, a, b); }
 
   void apply(std::uint64_t begin, const PkdItem<K>* items, std::size_t n, std::byte*) {
-    for (std::size_t i = 0; i < n; ++i) std::memcpy(records_ + begin + i, items[i].x, sizeof items[i].x);
+    for (std::size_t i = 0; i < n; ++i)
+      if (items[i].local != i) std::memcpy(records_ + begin + i, items[i].x, sizeof items[i].x);
   }
 
  private:
@@ -200,7 +201,8 @@ class ColumnsStore {
         const std::size_t part = std::min(bytes_per_item(), column.bytes - done);
         for_size(part, [&](auto size) {
           const std::size_t length = size == 0 ? part : size;
-          for (std::size_t i = 0; i < n; ++i) std::memcpy(bytes + i * length, column.at(begin + i) + done, length);
+          for (std::size_t i = 0; i < n; ++i)
+            if (items[i].local != i) std::memcpy(bytes + i * length, column.at(begin + i) + done, length);
           for (std::size_t i = 0; i < n; ++i)
             if (items[i].local != i) std::memcpy(column.at(begin + i) + done, bytes + items[i].local * length, length);
         });

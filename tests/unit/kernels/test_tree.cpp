@@ -254,20 +254,23 @@ void TestTree::put_in_order(Order order) {
     for (std::uint64_t i = 0; i < count; ++i) index64_.push_back(i);
     tree_.index64 = index64_.data();
     tree_.position_by_place = false;
-    return build_index(tree_, index64_.data());
+    build_index(tree_, index64_.data());
+    return;
   }
   for (std::uint64_t i = 0; i < count; ++i) index32_.push_back(static_cast<std::uint32_t>(i));
   if (order == Order::index32) {
     tree_.index32 = index32_.data();
     tree_.position_by_place = false;
-    return build_index(tree_, index32_.data());
+    build_index(tree_, index32_.data());
+    return;
   }
   std::vector<std::uint32_t>& along = order == Order::copy ? index32_ : who_;
   const MovedColumn numbers = {reinterpret_cast<std::byte*>(along.data()), 4, 4, false};
   if (order == Order::copy) {
     tree_.index32 = index32_.data();
     columns_.push_back(numbers);
-    return build_columns(tree_, columns_);
+    build_columns(tree_, columns_);
+    return;
   }
   // Packed coordinates alone take a path of their own in the build, so nothing moves along with those.
   const bool packed_f32 = tree_.position.type == Scalar::f32 && tree_.position.stride == 12;

@@ -32,6 +32,12 @@ StepReport full_report() {
   report.pixels = 250000;
   report.samples = 1000000;
   report.pixels_over_error = 12;
+  report.trees_built = 1;
+  report.trees_repaired = 2;
+  report.trees_reused = 4;
+  report.items_moved = 7;
+  report.treelets = 65536;
+  report.treelet_bytes = 599232;
   report.effects = {{"camera", 1000000, 0.75}, {"ambient_occlusion", 8000000, 0.5}};
   report.warnings = {"3 particles were skipped: position is not finite"};
   report.status = INSITU_ERROR_IO;
@@ -45,6 +51,7 @@ TEST(Report, WholeLine) {
             R"("seconds":{"build":0.5,"render":1.25,"write":0.0625,"total":2.0},)"
             R"("bytes":{"borrowed":240,"copied":16,"owned":4096,"peak":8192},"items":{"total":10,"skipped":3},)"
             R"("pixels":{"total":250000,"samples":1000000,"over_error":12},)"
+            R"("trees":{"built":1,"repaired":2,"reused":4,"moved":7,"treelets":65536,"treelet_bytes":599232},)"
             R"("effects":[{"name":"camera","rays":1000000,"seconds":0.75},)"
             R"({"name":"ambient_occlusion","rays":8000000,"seconds":0.5}],)"
             R"("warnings":["3 particles were skipped: position is not finite"],"status":"io","error":"disk full"})");
@@ -55,6 +62,7 @@ TEST(Report, EmptyStep) {
             R"({"step":0,"time":0.0,"images":[],"seconds":{"build":0.0,"render":0.0,"write":0.0,"total":0.0},)"
             R"("bytes":{"borrowed":0,"copied":0,"owned":0,"peak":0},"items":{"total":0,"skipped":0},)"
             R"("pixels":{"total":0,"samples":0,"over_error":0},)"
+            R"("trees":{"built":0,"repaired":0,"reused":0,"moved":0,"treelets":0,"treelet_bytes":0},)"
             R"("effects":[],"warnings":[],"status":"ok"})");
 }
 
@@ -135,7 +143,7 @@ void collect_members(const ordered_json& json, const std::string& prefix, std::s
 TEST(Report, ThePageListsExactlyTheMembers) {
   std::set<std::string> members;
   collect_members(ordered_json::parse(to_json_line(full_report())), "", members);
-  EXPECT_EQ(members.size(), 22u);
+  EXPECT_EQ(members.size(), 29u);
 
   std::ifstream page(INSITU_REPORT_PAGE);
   ASSERT_TRUE(page) << INSITU_REPORT_PAGE;
