@@ -1,5 +1,7 @@
 #include "picture.h"
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <system_error>
@@ -27,7 +29,9 @@ Picture::Picture(const PictureDesc& desc)
     : pattern_(desc.folder + "/cosmo_{step:4}.png"),
       order_(desc.order),
       attribute_(desc.color_by == ColorBy::speed ? "speed" : "density"),
-      radius_(particle_radius(desc)) {
+      radius_(particle_radius(desc)),
+      aspect_(static_cast<double>(desc.width) / static_cast<double>(desc.height)),
+      camera_fitted_(desc.slab > 0.0) {
   std::error_code ignored;  // a folder that cannot be made shows when the first picture is written
   std::filesystem::create_directories(desc.folder, ignored);
   const Clock::time_point start = Clock::now();
@@ -80,8 +84,10 @@ bool Picture::create(const PictureDesc& desc) {
   insitu_view_desc_init(&view);
   view.camera = &camera;
   view.effects = &effects;
-  view.lights = lights(&view.light_count);
-  set_background(view.background);
+  const std::array<insitu_light, 2> light = lights();
+  view.lights = light.data();
+  view.light_count = static_cast<std::uint32_t>(light.size());
+  std::copy(background.begin(), background.end(), view.background);
   const insitu_image_desc image = image_of(desc);
   if (!ok(insitu_geometry_set_style(context, matter_, &style)) || !ok(insitu_view_create(context, &view, &view_)) ||
       !ok(insitu_image_create(context, &image, &image_))) {
@@ -138,10 +144,13 @@ bool Picture::draw_step(std::uint64_t step, double a, Particles& particles) {
   // The first error of a step makes the calls after it do nothing, and insitu_step_end returns it: one check is enough.
   insitu_step_begin(context, step, a);
   insitu_particles_update(context, matter_, &desc);
-  insitu_commit(context);
+  insitu_status fitted = insitu_commit(context);
+  if (!camera_fitted_) fitted = insitu_view_fit(context, view_, aspect_);
   insitu_render(context, view_, image_);
   insitu_image_write(context, image_, pattern_.c_str());
-  return ok(insitu_step_end(context));
+  const bool written = ok(insitu_step_end(context));
+  camera_fitted_ = fitted == INSITU_OK;
+  return written;
 }
 
 void Picture::add_cost() {

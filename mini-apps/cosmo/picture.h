@@ -19,7 +19,7 @@ struct PictureDesc {
   std::uint32_t width = 1024;
   std::uint32_t height = 1024;
   std::uint32_t ao_samples = 2;         // ambient occlusion rays per hit; 0 = no ambient occlusion
-  std::uint32_t samples_per_pixel = 4;  // camera rays
+  std::uint32_t samples_per_pixel = 2;  // camera rays
   std::uint32_t order = INSITU_ORDER_PERMUTE;
   std::uint32_t threads = 0;  // 0 = as many as the machine has
   ColorBy color_by = ColorBy::density;
@@ -71,6 +71,8 @@ class Picture {
   std::uint32_t order_;
   const char* attribute_;
   double radius_;
+  double aspect_;
+  bool camera_fitted_;  // a camera for a slab is where it should be
   bool ready_ = false;
   std::string error_;
   Cost cost_;

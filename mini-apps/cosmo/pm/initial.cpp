@@ -32,9 +32,9 @@ std::vector<Vec3f> random_displacements(const PowerSpectrum& power, std::size_t 
                                         Workers& workers) {
   const auto n = static_cast<double>(nodes);
   const double lowest = 2.0 * std::numbers::pi / side;
-  // The transform of white noise, not normalised, has variance n^3; that of a field with power P has P n^6 / V. So a mode
-  // of the noise is multiplied by i times its wave number times
-  // sqrt(P n^3 / V) / k^2 / n^3, tabulated by the square of the wave number, an integer in units of the lowest.
+  // The transform of white noise, not normalised, has variance n^3; that of a field with power P has P n^6 / V. So a
+  // mode of the noise is multiplied by i times its wave number times sqrt(P n^3 / V) / k^2 / n^3, tabulated by the
+  // square of the wave number, an integer in units of the lowest.
   const std::size_t half = nodes / 2;
   std::vector<float> amplitude(3 * half * half + 1);
   for (std::size_t square = 1; square < amplitude.size(); ++square) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "initial.h"
 #include "power_spectrum.h"
@@ -101,8 +102,11 @@ void Simulation::step() {
 }
 
 void Simulation::color_by_density() {
-  density_.interpolate(particles_.position, particles_.color, workers_);
-  // A particle sees at least itself: the density is positive.
+  // A mesh with one node per particle: on the finer one of the forces, particles in voids would see little but themselves.
+  Density smooth(desc_.particles, desc_.side);
+  smooth.deposit(particles_.position, workers_);
+  smooth.interpolate(particles_.position, particles_.color, workers_);
+  // The density is positive: a particle sees at least itself.
   workers_.for_blocks(particles_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) particles_.color[i] = std::log10(particles_.color[i]);
   });
@@ -125,17 +129,28 @@ void Simulation::color_by_speed() {
 }
 
 double Simulation::density_contrast() {
-  const std::size_t plane = desc_.mesh * desc_.mesh;
-  const double per_mean = density_.per_mean();
-  const double square = workers_.sum(desc_.mesh, [&](std::size_t x) {
+  constexpr std::size_t width = 4;  // divides the mesh
+  const std::size_t nodes = desc_.mesh;
+  const std::size_t cubes = nodes / width;
+  const double per_mean = density_.per_mean() / static_cast<double>(width * width * width);
+  const double square = workers_.sum(cubes, [&](std::size_t cube) {
+    std::vector<std::uint64_t> weights(cubes * cubes);
+    for (std::size_t i = 0; i < width * nodes; ++i) {
+      // Cubes begin at node 1: the lattice started half a cell before it, so that every small shift crosses a face.
+      const std::size_t x = (cube * width + i / nodes + 1) % nodes;
+      const std::size_t y = i % nodes;
+      const std::uint64_t* const row = &density_.weights()[(x * nodes + y) * nodes];
+      std::uint64_t* const to = &weights[(y + nodes - 1) % nodes / width * cubes];
+      for (std::size_t z = 0; z < nodes; ++z) to[(z + nodes - 1) % nodes / width] += row[z];
+    }
     double sum = 0.0;
-    for (std::size_t i = x * plane; i < (x + 1) * plane; ++i) {
-      const double delta = static_cast<double>(density_.weights()[i]) * per_mean - 1.0;
+    for (const std::uint64_t weight : weights) {
+      const double delta = static_cast<double>(weight) * per_mean - 1.0;
       sum += delta * delta;
     }
     return sum;
   });
-  return std::sqrt(square / static_cast<double>(density_.weights().size()));
+  return std::sqrt(square / static_cast<double>(cubes * cubes * cubes));
 }
 
 std::array<double, 3> Simulation::total_momentum() const {

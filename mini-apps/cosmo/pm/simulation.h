@@ -51,7 +51,8 @@ class Simulation {
   double redshift() const { return 1.0 / a() - 1.0; }
   // Of the state as it is; the mesh is that of the forces.
   const Density& density() const { return density_; }
-  double density_contrast();                     // standard deviation over the nodes of the mesh
+  // Standard deviation over cubes of 4^3 nodes. Over single nodes the lattice that particles start from would show.
+  double density_contrast();
   std::array<double, 3> total_momentum() const;  // in 1e10 solar masses / h * 100 km/s
   double absolute_momentum() const;              // sum of magnitudes, to compare with
   Workers& workers() { return workers_; }
