@@ -1,5 +1,5 @@
 // Cloud in cell: a particle is a cube as wide as a cell of the mesh, and belongs to the eight nodes around it in
-// proportion to the volumes (Hockney & Eastwood, Computer Simulation Using Particles, 1988, section 5-3).
+// proportion to the volumes (Hockney & Eastwood, Computer Simulation Using Particles, 1988, chapter 5).
 #pragma once
 
 #include <algorithm>

@@ -9,7 +9,7 @@ namespace {
 
 // Intervals that leave no error above rounding of the single precision state: steps are short, integrals from the
 // beginning of time are long.
-constexpr int step_pairs = 16;
+constexpr int step_pairs = 32;
 constexpr int long_pairs = 512;
 
 // integral da / (a E)^3 from 0 to a. The integrand behaves like a^(3/2) at the start; with a = s^2 it is smooth.

@@ -5,73 +5,32 @@
 #include <numbers>
 
 namespace cosmo {
-namespace {
-
-// Fourth order central difference: df/dx = (8 (f1 - f-1) - (f2 - f-2)) / 12 h. Its transform is i D(k):
-double difference(double kh) { return (8.0 * std::sin(kh) - std::sin(2.0 * kh)) / 6.0; }  // times 1/h
-
-// Transform of the cloud along one axis, squared: deposit and interpolation.
-double cloud_square(double kh) {
-  const double x = 0.5 * kh;
-  const double sinc = std::abs(x) < 1e-8 ? 1.0 : std::sin(x) / x;
-  return sinc * sinc * sinc * sinc;
-}
-
-}  // namespace
 
 Gravity::Gravity(std::size_t nodes, double side, double omega_m, Workers& workers)
     : nodes_(nodes), side_(side), clouds_(nodes, side), fourier_(nodes), potential_(nodes) {
   tabulate(omega_m, workers);
 }
 
-// The optimal influence function (Hockney & Eastwood, equation 8-22): of all factors between density and potential, the
-// one whose forces between two particles, deposit, differences, interpolation and aliases included, are on average
-// closest to those of Newton. It is -1/k^2 for waves that are long compared with a cell.
-//     G(k) = D . sum_n R(k_n) U^2(k_n) / |D|^2 (sum_n U^2(k_n))^2,   R = -k / k^2,   k_n = k + 2 pi n / h
-// with U^2 the transform of the squared cloud; the terms fall off with |n|^5, so that the nearest aliases are enough.
+// The influence function is that of the Laplacian as a difference over seven points, -h^2 / (4 sum sin^2(k_i h / 2))
+// (Hockney & Eastwood, chapter 6; Klypin & Holtzman, astro-ph/9712217). For long waves it is -1/k^2; for shorter ones
+// it is larger, by (kh)^2 / 12 along an axis, half of what the clouds of deposit and interpolation take away. Dividing
+// by all of their smoothing instead makes forces between close particles depend on where between the nodes they are.
 void Gravity::tabulate(double omega_m, Workers& workers) {
   const std::size_t half = nodes_ / 2 + 1;
   influence_.resize(half * half * half);
   const double h = side_ / static_cast<double>(nodes_);
-  constexpr int aliases = 3;
-  // Along one axis: wave numbers and squared clouds of a mode and its aliases, in units of 1/h.
-  struct Axis {
-    double difference, kh[aliases], cloud[aliases], all_clouds;
-  };
-  std::vector<Axis> axes(half);
-  for (std::size_t i = 0; i < half; ++i) {
-    const double kh = 2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(nodes_);
-    axes[i].difference = difference(i == nodes_ / 2 ? 0.0 : kh);
-    for (int n = 0; n < aliases; ++n) {
-      axes[i].kh[n] = kh + 2.0 * std::numbers::pi * (n - 1);
-      axes[i].cloud[n] = cloud_square(axes[i].kh[n]);
-    }
-    const double s = std::sin(0.5 * kh);
-    axes[i].all_clouds = 1.0 - 2.0 / 3.0 * s * s;  // of all aliases, in closed form
-  }
-  // The transform back is not normalised; the difference below is taken without its 1/h.
+  // The transform back is not normalised.
   const double scale = 1.5 * omega_m * h * h / std::pow(static_cast<double>(nodes_), 3.0);
+  std::vector<double> sine(half);  // sin^2(kh / 2)
+  for (std::size_t i = 0; i < half; ++i) {
+    sine[i] = std::pow(std::sin(std::numbers::pi * static_cast<double>(i) / static_cast<double>(nodes_)), 2);
+  }
   workers.for_each(half, [&](std::size_t x) {
     for (std::size_t y = 0; y < half; ++y) {
       for (std::size_t z = 0; z < half; ++z) {
-        const Axis* const axis[3] = {&axes[x], &axes[y], &axes[z]};
-        double sum = 0.0;
-        for (int alias = 0; alias < aliases * aliases * aliases; ++alias) {
-          const int n[3] = {alias / (aliases * aliases), alias / aliases % aliases, alias % aliases};
-          double dot = 0.0, square = 0.0, cloud = 1.0;
-          for (int k = 0; k < 3; ++k) {
-            const double kh = axis[k]->kh[n[k]];
-            dot += axis[k]->difference * kh;
-            square += kh * kh;
-            cloud *= axis[k]->cloud[n[k]];
-          }
-          if (square > 0.0) sum -= dot / square * cloud;
-        }
-        double square = 0.0, clouds = 1.0;
-        for (const Axis* a : axis) square += a->difference * a->difference, clouds *= a->all_clouds;
-        // No difference sees the mean, nor a mode that changes sign from node to node: they pull nobody.
-        const double value = square > 0.0 ? sum / (square * clouds * clouds) : 0.0;
-        influence_[(x * half + y) * half + z] = static_cast<float>(scale * value);
+        const double square = 4.0 * (sine[x] + sine[y] + sine[z]);
+        // The mean pulls nobody: only the contrast counts.
+        influence_[(x * half + y) * half + z] = square > 0.0 ? static_cast<float>(-scale / square) : 0.0f;
       }
     }
   });

@@ -18,7 +18,7 @@ class Gravity {
   void solve(const Density& density, Workers& workers);
 
   // - grad phi at a place: fourth order differences at the nodes, interpolated by the clouds of the deposit. The pull
-  // of a particle on itself, and the sum of all forces, are then zero (Hockney & Eastwood, section 5-3-3).
+  // of a particle on itself, and the sum of all forces, are then zero (Hockney & Eastwood, chapter 5).
   Vec3f acceleration(const Vec3f& position) const;
 
   // momentum += factor * acceleration, for all particles.

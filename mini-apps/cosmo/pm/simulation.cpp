@@ -102,7 +102,8 @@ void Simulation::step() {
 }
 
 void Simulation::color_by_density() {
-  // A mesh with one node per particle: on the finer one of the forces, particles in voids would see little but themselves.
+  // A mesh with one node per particle: on the finer one of the forces, particles in voids would see little but
+  // themselves.
   Density smooth(desc_.particles, desc_.side);
   smooth.deposit(particles_.position, workers_);
   smooth.interpolate(particles_.position, particles_.color, workers_);
