@@ -18,7 +18,7 @@ struct PictureDesc {
   std::string folder = ".";
   std::uint32_t width = 1024;
   std::uint32_t height = 1024;
-  std::uint32_t ao_samples = 2;         // ambient occlusion rays per hit; 0 = no ambient occlusion
+  std::uint32_t ao_samples = 1;         // ambient occlusion rays per hit; 0 = no ambient occlusion
   std::uint32_t samples_per_pixel = 2;  // camera rays
   std::uint32_t order = INSITU_ORDER_PERMUTE;
   std::uint32_t threads = 0;  // 0 = as many as the machine has
