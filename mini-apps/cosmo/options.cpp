@@ -1,6 +1,7 @@
 #include "options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <map>
 #include <regex>
 
@@ -97,7 +98,7 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
       ->type_name("density|speed")
       ->check(silent(CLI::IsMember(colors)));
   double slab = -1.0;
-  app.add_option("--slab", slab, "thickness of the slice that is drawn; 0 = the whole box [a tenth of --side]")
+  app.add_option("--slab", slab, "thickness of the slice that is drawn; 0 = the whole box [13 lattice spacings]")
       ->type_name("")
       ->check(silent(CLI::Range(0.0, 1e5)));
   number("--ao", picture.ao_samples, 0u, 4096u, "ambient occlusion rays per hit; 0 = none");
@@ -124,7 +125,8 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
   picture.threads = static_cast<std::uint32_t>(simulation.threads);
   picture.side = simulation.side;
   picture.spacing = simulation.side / static_cast<double>(simulation.particles);
-  picture.slab = slab < 0.0 ? 0.1 * simulation.side : slab;
+  // Thick enough for the starting lattice to look even, thin enough to look through at the end.
+  picture.slab = slab < 0.0 ? std::min(13.0 * picture.spacing, 0.25 * simulation.side) : slab;
   return std::nullopt;
 }
 

@@ -5,8 +5,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <memory>
+#include <system_error>
 
 #include "pm/power_spectrum.h"
 #include "pm/spectrum.h"
@@ -47,7 +47,8 @@ class Run {
     bool complete = drawn_ == cost_.pictures;
     for (OutputFile* file : {&summary_, &spectrum_}) {
       if (file->complete()) continue;
-      std::fprintf(stderr, "cosmo: %s is not complete: %s\n", file->path().c_str(), std::strerror(errno));
+      std::fprintf(stderr, "cosmo: %s is not complete: %s\n", file->path().c_str(),
+                   std::generic_category().message(errno).c_str());
       complete = false;
     }
     return complete ? exit_success : exit_incomplete;

@@ -2,15 +2,15 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <stdexcept>
+#include <system_error>
 
 namespace cosmo {
 
 OutputFile::OutputFile(const std::string& path) : path_(path) {
   if (path.empty()) return;
   file_.reset(std::fopen(path.c_str(), "w"));
-  if (!file_) throw std::invalid_argument("cannot write " + path + ": " + std::strerror(errno));
+  if (!file_) throw std::invalid_argument("cannot write " + path + ": " + std::generic_category().message(errno));
 }
 
 void write_summary(const Options& options, const RunCost& cost, OutputFile& out) {
