@@ -112,7 +112,7 @@ bool Picture::draw(std::uint64_t step, double a, Particles& particles) {
 
 // In the time loop: hand over this step's arrays, draw, take them back.
 bool Picture::draw_step(std::uint64_t step, double a, Particles& particles) {
-  insitu_context const context = context_.get();
+  insitu_context context = context_.get();
 
   // Arrays are described, not copied. If the library may change the order of the particles, it must know of all that
   // belongs to one, and permutes everything together; it reads positions and colours only.
