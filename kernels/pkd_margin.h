@@ -27,9 +27,7 @@ struct TreeMargin {
     for (int c = 0; c < 3; ++c) distance = std::max(distance, std::abs(ray.origin[c]));
     return Fits(distance);
   }
-  bool Fits(double distance) const {
-    return fits && 128.0 * f64_unit * distance < 4.0 * f32_unit * extent;
-  }
+  bool Fits(double distance) const { return fits && 128.0 * f64_unit * distance < 4.0 * f32_unit * extent; }
 
   explicit TreeMargin(const PkdTree& tree) {
     double diagonal2 = 0.0;

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
+#include <ostream>
+#include <string>
 #include <vector>
 
 #include "geometry/pkd/treelet_build.h"
@@ -39,6 +41,7 @@ struct HugeCase {
   bool each_radius;  // an array of radii instead of one for all
   bool thin;         // radii too small for f32 tests of the whole tree
 };
+std::ostream& operator<<(std::ostream& out, const HugeCase& c) { return out << c.name; }
 
 // Particles sorted along x, which is the order of a tree for any number of them: at zero up to the window, which begins
 // at `begin`; within it from 100 to 200, and so near the axis that x is the longest side down to the leaves. The window
