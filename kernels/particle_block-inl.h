@@ -33,7 +33,10 @@ class ParticleRun {
   static constexpr std::size_t most_lanes = 16;
 
   HWY_INLINE ParticleRun(const PkdTree& tree, const Positions& positions, std::uint64_t begin, std::uint64_t end)
-      : tree_(tree), positions_(positions), begin_(begin), size_(begin < end ? static_cast<std::size_t>(end - begin) : 0) {}
+      : tree_(tree),
+        positions_(positions),
+        begin_(begin),
+        size_(begin < end ? static_cast<std::size_t>(end - begin) : 0) {}
 
   HWY_INLINE std::size_t size() const { return size_; }
   HWY_INLINE std::uint64_t place(std::size_t i) const { return begin_ + i; }

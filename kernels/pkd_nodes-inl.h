@@ -20,8 +20,20 @@
 HWY_BEFORE_NAMESPACE();
 namespace insitu::kernels::HWY_NAMESPACE {
 
+// The split axis of the tree: the longest side, as PkdBox::split_axis has it. Splits at a depth of `depth` levels.
+struct WidestSide {
+  template <class Key>
+  static HWY_INLINE unsigned Axis(const Key* lower, const Key* upper, unsigned /*depth*/) {
+    const Key x = upper[0] - lower[0];
+    const Key y = upper[1] - lower[1];
+    const Key z = upper[2] - lower[2];
+    const unsigned of_two = y > x ? 1 : 0;
+    return z > (y > x ? y : x) ? 2 : of_two;
+  }
+};
+
 // The Nodes of walk-inl.h.
-template <class Positions>
+template <class Positions, class SplitRule = WidestSide>
 class PkdNodes {
  public:
   using Key = typename Positions::Key;
@@ -91,6 +103,7 @@ class PkdNodes {
     const hn::CappedTag<Key, 4> d;
     const unsigned bits = level == 0 ? root_bits_ : 3;
     const unsigned children = 1u << bits;
+    const unsigned depth = level == 0 ? 0 : root_bits_ + 3 * (level - 1);
     node.bits = bits;
     std::uint64_t end = place.end;
     if (HWY_UNLIKELY(IsPoint(place.box)) && few_for_all_) end = std::min(place.begin + 2, end);
@@ -117,7 +130,8 @@ class PkdNodes {
       }
       const unsigned middle = row + 2 * row * (at - first);
       const std::uint64_t mid = std::min(begins[middle] - 1, end - 1);
-      const unsigned axis = WidestSide(node, at);
+      const unsigned axis =
+          SplitRule::Axis(node.lower[at], node.upper[at], depth + static_cast<unsigned>(std::bit_width(at)) - 1);
       if (at == first) axes |= axis << 2 * (static_cast<unsigned>(std::bit_width(at)) - 1 + 3 - bits);
       const auto plane = hn::Set(d, positions_.key(mid, static_cast<int>(axis)));
       for (std::size_t i = 0; i < 4; i += hn::Lanes(d)) {
@@ -153,15 +167,6 @@ class PkdNodes {
  private:
   static bool IsPoint(const Box& box) {
     return box.lower[0] == box.upper[0] && box.lower[1] == box.upper[1] && box.lower[2] == box.upper[2];
-  }
-
-  // PkdBox::split_axis.
-  HWY_INLINE static unsigned WidestSide(const Node& node, unsigned at) {
-    const Key x = node.upper[at][0] - node.lower[at][0];
-    const Key y = node.upper[at][1] - node.lower[at][1];
-    const Key z = node.upper[at][2] - node.lower[at][2];
-    const unsigned of_two = y > x ? 1 : 0;
-    return z > (y > x ? y : x) ? 2 : of_two;
   }
 
   // The boxes of the children, grown.

@@ -98,7 +98,7 @@ struct OrderScratch {
   PreferLocal prefer;
   const void* context;
   std::uint64_t leaf = pkd_leaf_size;  // runs of at most so many are left in any order
-  bool nearly_ordered = false;  // medians are then searched near the old ones
+  bool nearly_ordered = false;         // medians are then searched near the old ones
 };
 
 // Puts `count` items, below 2^32, into the order of a tree within `box`. run_padding scalars behind them can be read.

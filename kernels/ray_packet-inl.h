@@ -256,9 +256,8 @@ class StreamPackets {
     packet.noted = 0;
     packet.here = 0;
     for (std::size_t i = 0; i < size; ++i) {
-      // Whether a noted candidate is the excluded item is left to the confirmation.
-      const bool may_note = i < count && rays_[first + i].exclude == no_item && tree_.count <= most_noted;
-      packet.best_earliest[i] = may_note ? packet.lanes.t_high[i] - shrink_ : -std::numeric_limits<float>::infinity();
+      packet.best_earliest[i] = i < count && MayNote(rays_[first + i]) ? packet.lanes.t_high[i] - shrink_
+                                                                       : -std::numeric_limits<float>::infinity();
       packet.t_certain[i] = packet.lanes.t_low[i] + shrink_;
     }
     return true;
@@ -371,6 +370,9 @@ class StreamPackets {
     return nearer;
   }
 
+  // Whether a candidate is the excluded item is left to the confirmation; places are noted in 32 bits.
+  bool MayNote(const Ray& ray) const { return ray.exclude == no_item && tree_.count <= most_noted; }
+
   void Confirm(RayPacket& packet, std::size_t lane, std::uint64_t place) {
     const Ray& ray = rays_[packet.first_ray + lane];
     FirstHitVisitor visitor(ray, hits_[packet.first_ray + lane], (packet.here >> lane & 1) != 0);
@@ -378,7 +380,7 @@ class StreamPackets {
     packet.here |= (visitor.is_here() ? 1u : 0u) << lane;
     const double t = visitor.t_limit() - packet.lanes.t_shift[lane];
     packet.lanes.t_high[lane] = std::min(packet.lanes.t_high[lane], static_cast<float>(t + margin_.value));
-    if (ray.exclude == no_item) packet.best_earliest[lane] = static_cast<float>(t - margin_.value);
+    if (MayNote(ray)) packet.best_earliest[lane] = static_cast<float>(t - margin_.value);
   }
   HWY_INLINE void ConfirmAllNoted(const RayPacket& packet) {
     const hn::CappedTag<double, size> d;

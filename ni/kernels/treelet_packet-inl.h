@@ -227,6 +227,9 @@ class TreeletPackets {
   using V = hn::Vec<D>;
   static constexpr std::uint64_t most_noted = std::uint64_t{1} << 32;
 
+  // A noted candidate is a place of 32 bits; whether it is the excluded item only the confirmation would tell.
+  HWY_INLINE bool MayNote(const Ray& ray) const { return ray.exclude == no_item && tree_.count <= most_noted; }
+
   // False: the rays come from too far away, and have been traced one by one.
   bool EnterPacket(TreeletPacket& packet, std::size_t first, std::size_t count) {
     packet.rays.Load(rays_ + first, count);
@@ -244,8 +247,7 @@ class TreeletPackets {
     packet.noted = 0;
     packet.here = 0;
     for (std::size_t i = 0; i < size; ++i) {
-      // Whether a noted candidate is the excluded item is left to the confirmation.
-      const bool may_note = i < count && rays_[first + i].exclude == no_item && tree_.count <= most_noted;
+      const bool may_note = i < count && MayNote(rays_[first + i]);
       packet.best_earliest[i] = may_note ? packet.lanes.t_high[i] - shrink_ : -std::numeric_limits<float>::infinity();
       packet.t_certain[i] = packet.lanes.t_low[i] + shrink_;
     }
@@ -366,7 +368,7 @@ class TreeletPackets {
     packet.here |= (visitor.is_here() ? 1u : 0u) << lane;
     const double t = visitor.t_limit() - packet.lanes.t_shift[lane];
     packet.lanes.t_high[lane] = std::min(packet.lanes.t_high[lane], static_cast<float>(t + margin_.value));
-    if (ray.exclude == no_item) packet.best_earliest[lane] = static_cast<float>(t - margin_.value);
+    if (MayNote(ray)) packet.best_earliest[lane] = static_cast<float>(t - margin_.value);
   }
   HWY_INLINE void ConfirmAllNoted(const TreeletPacket& packet) {
     const hn::CappedTag<double, size> d;

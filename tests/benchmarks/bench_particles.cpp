@@ -4,10 +4,12 @@
 // and streams, the best way for camera rays and the best for occlusion rays. `_vs_embree_best` adds user geometry with
 // one sphere per primitive. A frame is one camera ray per pixel and one ambient occlusion ray per hit. Speeds are
 // baseline seconds over ours; the metrics are the worst over scenes, sizes, views and numbers of threads.
+// paper_variants.h adds what the paper's own layout and split axes would give, there with our seconds over theirs.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
 #include "measure.h"
+#include "paper_variants.h"
 #include "particle_builds.h"
 #include "particle_frames.h"
 #include "particle_rebuilds.h"
@@ -17,6 +19,7 @@ int main(int argc, char** argv) {
   bench::FrameOptions frames;
   bool builds_only = false;
   bool frames_only = false;
+  bool variants_only = false;
   bool large = false;
   std::string json;
   std::vector<std::uint64_t> counts;
@@ -26,6 +29,7 @@ int main(int argc, char** argv) {
   app.add_flag("--large", large, "100 million particles as well");
   app.add_flag("--builds-only", builds_only, "builds without frames");
   app.add_flag("--frames-only", frames_only, "frames without builds");
+  app.add_flag("--variants-only", variants_only, "only the paper's structure beside ours");
   app.add_option("--json", json, "write {context, results} to this file");
   app.add_option("--particles", counts, "numbers of particles (default 1000000 and 10000000)");
   app.add_option("--scenes", scenes, "uniform, clustered")->capture_default_str();
@@ -49,25 +53,29 @@ int main(int argc, char** argv) {
   teams.emplace_back(1);
   teams.emplace_back(2);
   bench::FrameMetrics metrics;
+  bench::VariantSpeeds variants;
   const bench::BuildOptions builds{frames.quick, frames.repetitions};
   const auto note = [&metrics](const std::map<std::string, double>& speeds) {
     for (const auto& [metric, value] : speeds) metrics.note_speed(metric, value);
   };
+  const bool with_builds = !frames_only && !variants_only;
   for (const std::uint64_t count : counts) {
     for (const std::string& name : scenes) {
       const bench::ParticleScene scene = bench::make_scene(name, count);
-      if (!frames_only) {
+      if (with_builds) {
         note(measure_builds(builds, scene, teams, report.context()["builds"]));
         if (name == "uniform")
           note(measure_displaced_rebuild(builds, scene, teams.back(), report.context()["rebuilds"]));
       }
-      if (!builds_only) measure_frames(frames, scene, teams, metrics, report.context()["frames"]);
+      if (builds_only) continue;
+      if (!variants_only) measure_frames(frames, scene, teams, metrics, report.context()["frames"]);
+      measure_paper_variants(frames, scene, teams.back(), variants, report.context()["paper_variants"]);
     }
   }
-  if (!frames_only) note(measure_melt_rebuild(builds, teams.back(), report.context()["rebuilds"]));
+  if (with_builds) note(measure_melt_rebuild(builds, teams.back(), report.context()["rebuilds"]));
 
   std::printf("\n");
-  for (const auto& values : {metrics.most, metrics.worst})
+  for (const auto& values : {metrics.most, metrics.worst, variants.metrics()})
     for (const auto& [name, value] : values) {
       std::printf("%-45s %.3f\n", name.c_str(), value);
       report.results()[name] = value;
