@@ -53,7 +53,7 @@ HWY_INLINE void TraceSome(const PaperView& view, const Positions& positions, con
     limits[i] = -std::numeric_limits<double>::infinity();
   }
   if (view.way == RayWay::packet) {
-    in::RayPacket packet;
+    in::PaperPacket packet;
     packet.Load(view.tree, margin, rays, count, limits);
     PacketWalk<Nodes, Visitor>(view.tree, positions, nodes, rays, packet, visitors).Run();
     return;

@@ -7,7 +7,7 @@
 #define INSITU_BENCH_PAPER_WALK_INL_H_
 #endif
 
-#include "kernels/pkd_packet-inl.h"
+#include "paper_packet-inl.h"
 #include "paper_tree.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -200,7 +200,7 @@ class PacketWalk {
   using Node = typename Nodes::Node;
 
   PacketWalk(const PkdTree& tree, const Positions& positions, const Nodes& nodes, const Ray* rays,
-             in::RayPacket& packet, Visitor* visitors)
+             in::PaperPacket& packet, Visitor* visitors)
       : tree_(tree), positions_(positions), nodes_(nodes), rays_(rays), packet_(packet), visitors_(visitors) {
     const double wide = tree.radius.uniform + packet.margin();
     radius2_ = static_cast<float>(wide * wide * (1.0 + 8.0 * insitu::kernels::f32_unit));
@@ -337,7 +337,7 @@ class PacketWalk {
   const Positions& positions_;
   const Nodes& nodes_;
   const Ray* rays_;
-  in::RayPacket& packet_;
+  in::PaperPacket& packet_;
   Visitor* visitors_;
   float radius2_;
 };

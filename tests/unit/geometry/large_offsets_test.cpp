@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 #include <vector>
 
@@ -60,7 +61,8 @@ void check_split(const HugePositions& huge, Store store, const NumberAt& number_
     const auto nth = keys.begin() + static_cast<std::ptrdiff_t>(mid - range.begin);
     std::nth_element(keys.begin(), nth, keys.end());
     Workers workers(2);
-    EXPECT_EQ(static_cast<float>(workers.run([&] { return split_range(store, range, mid, axis); })), *nth);
+    std::atomic<std::uint64_t> moved{0};
+    EXPECT_EQ(static_cast<float>(workers.run([&] { return split_range(store, range, mid, axis, moved); })), *nth);
     std::size_t wrong = 0;
     std::vector<bool> is_seen(range_size, false);
     for (std::uint64_t place = range.begin; place < range.end; ++place) {
