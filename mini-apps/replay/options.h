@@ -52,6 +52,7 @@ struct Options {
   std::optional<std::array<double, 2>> range;
   std::string radius;
   double radius_scale = 1.0;
+  double treelet_share = 0.0;                       // of the bytes of the positions
   std::array<double, 4> background = {1, 1, 1, 1};  // linear
 
   CameraOptions camera;

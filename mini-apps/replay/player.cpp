@@ -118,6 +118,7 @@ void Player::update(Frame& frame, Arrays& arrays) {
   desc.position = &arrays.position_array;
   desc.radius_default = arrays.radius.for_all;
   desc.radius_scale = options_.radius_scale;
+  desc.treelet_share = options_.treelet_share;
   if (!arrays.radius.per_particle.empty()) {
     arrays.radius_array = records(INSITU_F32, 1, arrays.radius.per_particle.data());
     desc.radius = &arrays.radius_array;

@@ -56,6 +56,37 @@ TEST(Budget, IsExact) {
   }
 }
 
+// Treelets take what they are granted, or less, and nothing fails for want of them.
+TEST(Budget, TreeletsFitWhatIsThere) {
+  constexpr std::uint64_t position_bytes = 24 * count;
+  struct Room {
+    double share;
+    std::uint64_t left;  // for treelets; 0: no cap
+    bool expected;
+  };
+  for (const Room& room : {Room{0.15, 0, true}, Room{0.15, 4096, true}, Room{0.15, 63, false}, Room{1e-6, 0, false},
+                           Room{0.0, 0, false}, Room{1e300, 0, true}}) {
+    SCOPED_TRACE(::testing::Message() << room.share << ", " << room.left);
+    Cloud cloud(count);
+    insitu_particles_desc desc = permutable(cloud);
+    desc.treelet_share = room.share;
+    const Context context(0, room.left == 0 ? 0 : frame_bytes + room.left);
+    const insitu_geometry geometry = testing::make_particles(context, INSITU_ORDER_PERMUTE, 0);
+    const insitu_view view = testing::make_view(context);
+    const insitu_image image = testing::make_image(context, 16, 16);
+    EXPECT_TRUE(works(context, run_step(context, geometry, desc, view, image)));
+    const insitu_stats stats = context.stats();
+    EXPECT_EQ(stats.treelets != 0, room.expected);
+    EXPECT_EQ(stats.treelet_bytes != 0, room.expected);
+    EXPECT_LE(static_cast<double>(stats.treelet_bytes), room.share * static_cast<double>(position_bytes));
+    if (room.left != 0) {
+      EXPECT_LE(stats.treelet_bytes, room.left);
+    }
+    EXPECT_EQ(stats.owned_bytes, frame_bytes + stats.treelet_bytes);
+    EXPECT_GT(testing::read_picture(context, image).hits(), 0u);
+  }
+}
+
 TEST(Budget, OneByteTooFew) {
   for (const Case& each : cases) {
     if (each.bytes == 0) continue;

@@ -58,6 +58,7 @@ struct Variant {
   std::uint32_t max_threads = 0;
   std::uint32_t order = INSITU_ORDER_INDEX;
   std::uint32_t max_samples = 0;  // per pixel; 0: not adaptive
+  double treelet_share = 0.0;
 };
 
 std::vector<Particle> shuffled(const std::vector<Particle>& particles, std::uint64_t seed) {
@@ -121,7 +122,8 @@ insitu_style by_heat() {
 
 Picture draw(std::vector<Particle> particles, const Variant& variant) {
   const Context context(variant.max_threads);
-  const Arrays arrays(particles);
+  Arrays arrays(particles);
+  arrays.desc.treelet_share = variant.treelet_share;
   const insitu_geometry geometry = testing::make_particles(context, variant.order);
   const insitu_style style = by_heat();
   EXPECT_TRUE(works(context, insitu_geometry_set_style(context, geometry, &style)));
@@ -147,6 +149,18 @@ TEST_F(Invariance, NumberOfThreads) {
     for (const std::uint32_t max_threads : {1u, 2u, 3u, 8u, 0u}) {
       SCOPED_TRACE(max_threads);
       EXPECT_EQ(draw(particles, {max_threads, order}), reference);
+    }
+  }
+}
+
+// With many treelets, with few, and with none that fit.
+TEST_F(Invariance, Treelets) {
+  const std::vector<Particle> particles = make_particles(4);
+  const Picture reference = draw(particles, {.max_threads = 1});
+  for (const std::uint32_t order : {INSITU_ORDER_INDEX, INSITU_ORDER_PERMUTE, INSITU_ORDER_COPY}) {
+    for (const double share : {1.0, 0.02, 1e-9}) {
+      SCOPED_TRACE(share);
+      EXPECT_EQ(draw(particles, {.max_threads = 3, .order = order, .treelet_share = share}), reference);
     }
   }
 }

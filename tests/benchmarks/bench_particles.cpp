@@ -9,6 +9,7 @@
 #include <cstdio>
 
 #include "measure.h"
+#include "mixed_radii.h"
 #include "paper_variants.h"
 #include "particle_builds.h"
 #include "particle_frames.h"
@@ -68,7 +69,10 @@ int main(int argc, char** argv) {
           note(measure_displaced_rebuild(builds, scene, teams.back(), report.context()["rebuilds"]));
       }
       if (builds_only) continue;
-      if (!variants_only) measure_frames(frames, scene, teams, metrics, report.context()["frames"]);
+      if (!variants_only) {
+        measure_frames(frames, scene, teams, metrics, report.context()["frames"]);
+        measure_mixed_radii(frames, scene, teams.back(), metrics, report.context()["mixed_radii"]);
+      }
       measure_paper_variants(frames, scene, teams.back(), variants, report.context()["paper_variants"]);
     }
   }

@@ -194,10 +194,10 @@ void measure_view(const FrameOptions& options, const ParticleScene& scene, const
 void measure_frames(const FrameOptions& options, const ParticleScene& scene, std::vector<insitu::Workers>& teams,
                     FrameMetrics& metrics, nlohmann::ordered_json& rows) {
   insitu::Workers& workers = teams.back();
-  metrics.note_bytes("pkd_extra_bytes_per_particle",
-                     extra_bytes_per_particle(scene, ParticleOrder::permute, 0.0, workers));
-  metrics.note_bytes("pkd_index_extra_bytes_per_particle",
-                     extra_bytes_per_particle(scene, ParticleOrder::index, 0.0, workers));
+  metrics.note_cost("pkd_extra_bytes_per_particle",
+                    extra_bytes_per_particle(scene, ParticleOrder::permute, 0.0, workers));
+  metrics.note_cost("pkd_index_extra_bytes_per_particle",
+                    extra_bytes_per_particle(scene, ParticleOrder::index, 0.0, workers));
 
   std::vector<Own> owns;
   const auto add = [&](const char* name, ParticleOrder order, double share) {
@@ -209,8 +209,8 @@ void measure_frames(const FrameOptions& options, const ParticleScene& scene, std
   add("pkd_index", ParticleOrder::index, 0.0);
   add("treelet_index", ParticleOrder::index, options.treelet_share);
   const OwnParticles& treelet = *owns[1].particles;
-  metrics.note_bytes("treelet_bytes_ratio",
-                     static_cast<double>(treelet.set().treelet_bytes()) / static_cast<double>(treelet.data_bytes()));
+  metrics.note_cost("treelet_bytes_ratio",
+                    static_cast<double>(treelet.set().treelet_bytes()) / static_cast<double>(treelet.data_bytes()));
 
   std::vector<Candidate> candidates;
   for (const EmbreeGeometry geometry : {EmbreeGeometry::sphere_point, EmbreeGeometry::user_spheres}) {
@@ -219,8 +219,8 @@ void measure_frames(const FrameOptions& options, const ParticleScene& scene, std
       Candidate candidate{std::string(name_of(geometry)) + "/" + name_of(quality), geometry,
                           std::make_unique<EmbreeSpheres>(scene, geometry, quality)};
       workers.run([&] { candidate.spheres->build(); });
-      metrics.note_bytes(std::string("embree_") + name_of(geometry) + "_bytes_per_particle",
-                         static_cast<double>(candidate.spheres->bytes()) / static_cast<double>(scene.count()));
+      metrics.note_cost(std::string("embree_") + name_of(geometry) + "_bytes_per_particle",
+                        static_cast<double>(candidate.spheres->bytes()) / static_cast<double>(scene.count()));
       candidates.push_back(std::move(candidate));
     }
   }

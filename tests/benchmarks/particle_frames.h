@@ -21,13 +21,13 @@ struct FrameOptions {
 
 struct FrameMetrics {
   std::map<std::string, double> worst;  // speeds: the smallest counts
-  std::map<std::string, double> most;   // bytes: the largest counts
+  std::map<std::string, double> most;   // bytes, slowdowns: the largest counts
 
   void note_speed(const std::string& name, double value) {
     const auto [at, is_new] = worst.emplace(name, value);
     if (!is_new) at->second = std::min(at->second, value);
   }
-  void note_bytes(const std::string& name, double value) {
+  void note_cost(const std::string& name, double value) {
     const auto [at, is_new] = most.emplace(name, value);
     if (!is_new) at->second = std::max(at->second, value);
   }

@@ -159,20 +159,26 @@ void Particles::build(Budget& budget) {
 constexpr double most_per_treelet = 16.0;
 
 void Particles::plan_treelets(const Budget& budget) {
-  treelets_ = {};
-  const double position_bytes =
-      static_cast<double>(tree_.count) * static_cast<double>(3 * kernels::size_of(tree_.position.type));
-  const double most = std::min(arrays_->treelet_share * position_bytes, static_cast<double>(budget.left()));
-  treelets_ =
-      treelet_shape(tree_.count, treelet_depth(tree_.count, most_per_treelet, static_cast<std::uint64_t>(most)));
+  treelet_nodes_.clear();  // the index and the copy come first
+  treelets_ = treelet_shape(tree_.count, treelet_depth(tree_.count, most_per_treelet, treelet_room(budget)));
   if (!treelets_.exist()) return;
   while (tree_.built_leaf > 1 && tree_.built_leaf > tree_.count / treelets_.count) tree_.built_leaf /= 2;
 }
 
+std::uint64_t Particles::treelet_room(const Budget& budget) const {
+  const double position_bytes =
+      static_cast<double>(tree_.count) * static_cast<double>(3 * kernels::size_of(tree_.position.type));
+  const double share = std::min(arrays_->treelet_share * position_bytes, 9e18);
+  return std::min(static_cast<std::uint64_t>(share), budget.left());
+}
+
 void Particles::add_treelets(Budget& budget) {
-  if (!treelets_.exist()) return treelet_nodes_.clear();
-  const std::uint64_t nodes = treelets_.node_count();
-  treelet_nodes_.reset(budget, nodes, "the treelets of the particles");
+  if (!treelets_.exist()) return;
+  // Longer ones where the tree itself has taken the room meanwhile.
+  const unsigned depth = treelet_depth(tree_.count, most_per_treelet, treelet_room(budget));
+  treelets_ = treelet_shape(tree_.count, depth);
+  if (!treelets_.exist()) return;
+  treelet_nodes_.reset(budget, treelets_.node_count(), "the treelets of the particles");
   build_treelets(tree_, treelets_, treelet_nodes_.data());
   treelets_.nodes = treelet_nodes_.data();
 }

@@ -105,6 +105,7 @@ class Particles {
   // Settled before the tree, which has to be as fine as its treelets; their boxes are computed after it.
   void plan_treelets(const Budget& budget);
   void add_treelets(Budget& budget);
+  std::uint64_t treelet_room(const Budget& budget) const;
   void trace_first_hits(const kernels::Ray* rays, kernels::Hit* hits, std::size_t count) const;
   void trace_any_hits(const kernels::Ray* rays, std::uint8_t* occluded, std::size_t count) const;
   template <class Index>
