@@ -93,6 +93,9 @@ class Particles : public Geometry {
   // Sums over all records, alike for any order of them: changes when a bit of the borrowed arrays changes.
   std::uint64_t checksum() const;
 
+  // As bound; the tree stands in their space, world = origin + scale * value.
+  const ParticleArrays& arrays() const { return *arrays_; }
+  double position_scale() const { return arrays_->position_scale; }
   const kernels::PkdTree& tree() const { return tree_; }
   const kernels::Treelets& treelets() const { return treelets_; }
 
