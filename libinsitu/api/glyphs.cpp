@@ -133,8 +133,9 @@ std::string Glyphs::build_bonds(Budget& budget, const Particles& particles, cons
     search.radius_max = particles.tree().radius_max;
     search.periodic = source.periodic;
     find_bonds(budget, points, search, found_);
-    source.found = found_.data();
-    source.found_count = found_.size() / 2;
+    static constexpr FoundBond none{};
+    source.found = found_.empty() ? &none : found_.data();  // not NULL, which means pairs
+    source.found_count = found_.size();
   }
   const std::uint64_t pairs = source.pair_count();
   if (pairs >= most) throw Error(INSITU_ERROR_UNSUPPORTED, "bonds: more than 2^31 - 1 pairs");

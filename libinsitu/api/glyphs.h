@@ -100,7 +100,7 @@ class Glyphs {
   bool built_ = false;
   Sticks<BondSource> bond_sticks_;
   Sticks<ArrowSource> arrows_;
-  BudgetVector<std::uint32_t> found_;
+  BudgetVector<FoundBond> found_;
 };
 
 }  // namespace insitu

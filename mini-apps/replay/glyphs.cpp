@@ -2,34 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "elements.h"
 
 namespace replay {
 namespace {
 
-using Vector = std::array<double, 3>;
-
 // Two atoms are bonded when they are nearer than this times the sum of their van der Waals radii.
 constexpr double bond_share = 0.6;
-
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-double least_height(const Box& box) {
-  double least = 0.0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vector normal = cross(box.edge[(i + 1) % 3], box.edge[(i + 2) % 3]);
-    const double area = std::hypot(normal[0], normal[1], normal[2]);
-    const double volume =
-        std::abs(box.edge[i][0] * normal[0] + box.edge[i][1] * normal[1] + box.edge[i][2] * normal[2]);
-    const double height = area > 0.0 ? volume / area : 0.0;
-    least = i == 0 ? height : std::min(least, height);
-  }
-  return least;
-}
 
 bool wants_cell(const Options& options) {
   return options.cell || options.wrap || options.replicate != std::array<std::uint32_t, 3>{1, 1, 1};
@@ -64,14 +44,13 @@ CellChoice choose_cell(const Frame& frame, const Options& options) {
   return choice;
 }
 
-BondChoice choose_bonds(const Frame& frame, const Options& options, const RadiusChoice& radius) {
+BondChoice choose_bonds(const Frame& frame, const Options& options) {
   BondChoice choice;
   insitu_bonds_desc_init(&choice.bonds);
   if (!options.bonds && !options.ball_and_stick) return choice;
   choice.wanted = true;
-  double longest = options.bonds.value_or(0.0);
-  if (longest > 0.0) {
-    choice.bonds.cutoff = longest;
+  if (options.bonds.value_or(0.0) > 0.0) {
+    choice.bonds.cutoff = *options.bonds;
   } else {
     if (frame.count() > 0 && !is_vdw(frame, options)) {
       throw UsageError(
@@ -79,12 +58,10 @@ BondChoice choose_bonds(const Frame& frame, const Options& options, const Radius
           "of the types)");
     }
     choice.bonds.cutoff_by_radius = bond_share / ball_scale(options);
-    for (const float r : radius.per_particle) longest = std::max(longest, 2.0 * bond_share * static_cast<double>(r));
   }
   choice.bonds.radius = options.stick_radius;
-  // Across the borders as soon as the box counts, where it is large enough for that to mean something.
-  if (wants_cell(options) && frame.box.known && longest < 0.5 * least_height(frame.box))
-    choice.bonds.flags |= INSITU_BONDS_PERIODIC;
+  // Across the borders as soon as the box counts.
+  if (wants_cell(options)) choice.bonds.flags |= INSITU_BONDS_PERIODIC;
   return choice;
 }
 

@@ -3,7 +3,6 @@
 
 #include "insitu/insitu.h"
 
-#include "appearance.h"
 #include "frame.h"
 #include "options.h"
 
@@ -24,7 +23,7 @@ struct BondChoice {
   bool wanted = false;
   insitu_bonds_desc bonds;  // without name and particles
 };
-BondChoice choose_bonds(const Frame& frame, const Options& options, const RadiusChoice& radius);
+BondChoice choose_bonds(const Frame& frame, const Options& options);
 
 // Throws UsageError unless the attribute is there and has three components.
 void check_vectors(const Frame& frame, const Options& options);

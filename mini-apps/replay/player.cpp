@@ -95,7 +95,7 @@ void Player::play(Frame& frame) {
   check(insitu_step_begin(context, step, frame.time.value_or(static_cast<double>(step))));
   update(frame, arrays);
   set_style(color);
-  update_glyphs(frame, arrays.radius);
+  update_glyphs(frame);
   check(insitu_commit(context));
   if (fit_) fit();
   const int turns = options_.camera.turntable;
@@ -161,11 +161,11 @@ void Player::set_style(const ColorChoice& color) {
   check(insitu_geometry_set_style(context_.get(), particles_, &style));
 }
 
-void Player::update_glyphs(const Frame& frame, const RadiusChoice& radius) {
+void Player::update_glyphs(const Frame& frame) {
   insitu_context const context = context_.get();
   const CellChoice cell = choose_cell(frame, options_);
   check(insitu_particles_set_cell(context, particles_, cell.known ? &cell.cell : nullptr));
-  BondChoice bonds = choose_bonds(frame, options_, radius);
+  BondChoice bonds = choose_bonds(frame, options_);
   if (bonds.wanted) {
     bonds.bonds.particles = particles_;
     check(bonds_.id == 0 ? insitu_bonds_create(context, &bonds.bonds, &bonds_)

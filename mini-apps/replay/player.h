@@ -51,7 +51,7 @@ class Player {
   std::uint64_t number_of(const Frame& frame);
   void update(Frame& frame, Arrays& arrays);
   void set_style(const ColorChoice& color);
-  void update_glyphs(const Frame& frame, const RadiusChoice& radius);
+  void update_glyphs(const Frame& frame);
   void fit();
   void draw(std::uint64_t step, double angle_deg);
   void print_line(const std::string& name);

@@ -494,17 +494,17 @@ TEST(Glyphs, BadInputIsRefusedWithAReason) {
   EXPECT_EQ(insitu_step_end(context), INSITU_ERROR_INVALID_ARGUMENT);
   EXPECT_TRUE(works(context, insitu_geometry_destroy(context, out)));
 
-  // Bonds longer than half a cell, across its borders.
+  // Bonds longer than many cells, across their borders.
   cell = unit_cell();
   EXPECT_TRUE(works(context, set_cell()));
   insitu_bonds_desc_init(&bonds);
   bonds.particles = studio.geometry;
-  bonds.cutoff = 0.6;
+  bonds.cutoff = 20.0;
   bonds.flags = INSITU_BONDS_PERIODIC;
   EXPECT_TRUE(works(context, insitu_bonds_create(context, &bonds, &out)));
   insitu_step_begin(context, 0, 0.0);
   insitu_particles_update(context, studio.geometry, &cloud.desc);
-  EXPECT_TRUE(fails(context, insitu_commit(context), INSITU_ERROR_INVALID_ARGUMENT, {"half the height"}));
+  EXPECT_TRUE(fails(context, insitu_commit(context), INSITU_ERROR_INVALID_ARGUMENT, {"ten cells"}));
   insitu_step_end(context);
   // Sets take what stands on them along.
   EXPECT_TRUE(works(context, insitu_geometry_destroy(context, studio.geometry)));

@@ -16,49 +16,57 @@ std::uint64_t index_at(const kernels::ArrayView& view, std::uint64_t pair, std::
   }
 }
 
-bool is_before(const double a[3], const double b[3]) {
+int compare(const double a[3], const double b[3]) {
   for (int c = 0; c < 3; ++c)
-    if (a[c] != b[c]) return a[c] < b[c];
-  return false;
+    if (a[c] != b[c]) return a[c] < b[c] ? -1 : 1;
+  return 0;
 }
 
 }  // namespace
 
-bool BondSource::ends_of(std::uint64_t pair, std::uint64_t item[2], double point[2][3]) const {
+bool BondSource::ends_of(std::uint64_t pair, Ends& ends) const {
   for (std::uint32_t k = 0; k < 2; ++k) {
-    item[k] = found != nullptr ? found[2 * pair + k] : index_at(pairs, pair, k);
-    if (item[k] >= points.count() || !points.point(item[k], point[k])) return false;
+    ends.item[k] = found == nullptr ? index_at(pairs, pair, k) : k == 0 ? found[pair].a : found[pair].b;
+    if (ends.item[k] >= points.count() || !points.point(ends.item[k], ends.point[k])) return false;
   }
-  if (item[0] == item[1]) return false;
-  if (is_before(point[1], point[0])) {
-    std::swap(item[0], item[1]);
-    for (int c = 0; c < 3; ++c) std::swap(point[0][c], point[1][c]);
+  for (int c = 0; c < 3; ++c) ends.d[c] = ends.point[1][c] - ends.point[0][c];
+  ends.crosses = false;
+  if (found != nullptr) {
+    const std::int32_t* image = found[pair].image;
+    ends.crosses = image[0] != 0 || image[1] != 0 || image[2] != 0;
+    if (ends.crosses) {
+      const double count[3] = {static_cast<double>(image[0]), static_cast<double>(image[1]),
+                               static_cast<double>(image[2])};
+      double offset[3];
+      points.cell->offset_of(count, offset);
+      for (int c = 0; c < 3; ++c) ends.d[c] += offset[c];
+    }
+  } else {
+    if (ends.item[0] == ends.item[1]) return false;
+    ends.crosses = periodic && points.cell->nearest_image(ends.d);
+  }
+  constexpr double zero[3] = {};
+  const int order = compare(ends.point[0], ends.point[1]);
+  if (order > 0 || (order == 0 && compare(ends.d, zero) < 0)) {
+    std::swap(ends.item[0], ends.item[1]);
+    for (int c = 0; c < 3; ++c) {
+      std::swap(ends.point[0][c], ends.point[1][c]);
+      ends.d[c] = -ends.d[c];
+    }
   }
   return true;
 }
 
 bool BondSource::stick(std::uint64_t id, kernels::Stick& out) const {
-  std::uint64_t item[2];
-  double point[2][3];
-  if (!ends_of(id / 2, item, point)) return false;
-  double d[3];
-  for (int c = 0; c < 3; ++c) d[c] = point[1][c] - point[0][c];
+  Ends ends;
   const bool second = id % 2 != 0;
+  if (!ends_of(id / 2, ends) || (second && !ends.crosses)) return false;
   out.radius = radius;
-  out.ends = ends;
+  out.ends = this->ends;
   bool has_length = false;
-  if (periodic && points.cell->nearest_image(d)) {
-    for (int c = 0; c < 3; ++c) {
-      out.a[c] = point[second ? 1 : 0][c];
-      out.b[c] = out.a[c] + (second ? -0.5 : 0.5) * d[c];
-      has_length = has_length || out.a[c] != out.b[c];
-    }
-    return has_length;
-  }
-  if (second) return false;
   for (int c = 0; c < 3; ++c) {
-    out.a[c] = point[0][c];
-    out.b[c] = point[1][c];
+    out.a[c] = ends.point[second ? 1 : 0][c];
+    out.b[c] = ends.crosses ? out.a[c] + (second ? -0.5 : 0.5) * ends.d[c] : ends.point[1][c];
     has_length = has_length || out.a[c] != out.b[c];
   }
   return has_length;
@@ -70,13 +78,10 @@ bool BondSource::is_good(std::uint64_t pair) const {
 }
 
 std::uint64_t BondSource::color_item(std::uint64_t id, double along) const {
-  std::uint64_t item[2];
-  double point[2][3];
-  if (!ends_of(id / 2, item, point)) return 0;
-  double d[3];
-  for (int c = 0; c < 3; ++c) d[c] = point[1][c] - point[0][c];
-  if (periodic && points.cell->nearest_image(d)) return item[id % 2];
-  return item[along < 0.5 ? 0 : 1];
+  Ends ends;
+  if (!ends_of(id / 2, ends)) return 0;
+  if (ends.crosses) return ends.item[id % 2];
+  return ends.item[along < 0.5 ? 0 : 1];
 }
 
 bool BondSource::prefer(std::uint64_t a, std::uint64_t b) const {
@@ -84,7 +89,7 @@ bool BondSource::prefer(std::uint64_t a, std::uint64_t b) const {
   kernels::Stick y{};
   stick(a, x);
   stick(b, y);
-  const int order = compare(x, y);
+  const int order = insitu::compare(x, y);
   if (order != 0) return order < 0;
   for (const double along : {0.0, 1.0}) {
     const std::uint64_t p = color_item(a, along);

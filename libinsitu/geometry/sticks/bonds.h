@@ -7,14 +7,21 @@
 
 namespace insitu {
 
+// A bond that was searched for: the second end is that of particle b, moved by edges of the cell.
+struct FoundBond {
+  std::uint32_t a;
+  std::uint32_t b;
+  std::int32_t image[3];
+};
+
 // Source of Sticks. The stick of pair p has the id 2 p; where a bond leaves the cell on one side and comes back on the
 // other it is drawn as two halves, 2 p at the one end and 2 p + 1 at the other.
 struct BondSource {
   ParticlePoints points;
-  kernels::ArrayView pairs;              // of the caller: 2 integers each; unused when `found` is set
-  const std::uint32_t* found = nullptr;  // of our own: 2 per pair
+  kernels::ArrayView pairs;          // of the caller: 2 integers each; unused when `found` is set
+  const FoundBond* found = nullptr;  // of our own
   std::uint64_t found_count = 0;
-  bool periodic = false;
+  bool periodic = false;  // `pairs` mean nearest images
   double radius = 0.0;
   kernels::StickEnds ends = kernels::StickEnds::round;
 
@@ -34,7 +41,13 @@ struct BondSource {
 
  private:
   // The ends in an order that does not depend on that of the pair, so that the bits of a bond do not either.
-  bool ends_of(std::uint64_t pair, std::uint64_t item[2], double point[2][3]) const;
+  struct Ends {
+    std::uint64_t item[2];
+    double point[2][3];
+    double d[3];   // from the first to the second, or to the image of it that is meant
+    bool crosses;  // to an image
+  };
+  bool ends_of(std::uint64_t pair, Ends& ends) const;
 };
 
 // Every pair of particles that are nearer to each other than `cutoff`, or than `by_radius` times the sum of their
@@ -47,10 +60,9 @@ struct BondSearch {
   bool periodic = false;       // across the borders of the cell, too
 };
 
-// Two entries per pair, the smaller index first, in ascending order. Call within the workers. Throws Error:
-// over_budget; invalid_argument when the longest bond is not below half the height of a periodic cell; unsupported
-// above 2^31 pairs.
-void find_bonds(Budget& budget, const ParticlePoints& points, const BondSearch& search,
-                BudgetVector<std::uint32_t>& pairs);
+// Each bond once, in ascending order of `a`, the smaller index, and `b`; with periodic also those to images, of a
+// particle to its own ones too. Call within the workers. Throws Error: over_budget; invalid_argument when bonds may be
+// longer than ten cells; unsupported above 2^31 bonds.
+void find_bonds(Budget& budget, const ParticlePoints& points, const BondSearch& search, BudgetVector<FoundBond>& bonds);
 
 }  // namespace insitu

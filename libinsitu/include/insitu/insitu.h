@@ -307,8 +307,9 @@ INSITU_API insitu_status insitu_particles_set_cell(insitu_context context, insit
 enum {
   INSITU_BONDS_FLAT_ENDS = 1u, /* bare cylinders; by default half balls close the ends */
   INSITU_BONDS_OWN_STYLE = 2u, /* coloured by the bonds' own style; by default each half as the particle at its end */
-  INSITU_BONDS_PERIODIC = 4u   /* between nearest images in the set's cell: what crosses its border is drawn as a half
-                                  bond on either side. Exact for bonds below half the smallest height of the cell */
+  INSITU_BONDS_PERIODIC = 4u   /* across borders of the set's cell, each as a half bond on either side: pairs between
+                                  their nearest images (exact below half the smallest height of the cell), bonds by
+                                  distance to every image that is near enough */
 };
 
 /* Sticks between particles of one set, by a list of pairs, or between all pairs nearer than some distance. */

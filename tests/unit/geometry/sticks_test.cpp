@@ -117,13 +117,13 @@ TEST(Sticks, OfBallsThatCoincideOneIsShown) {
   source.points = points_of(x);
   source.radius = 0.2;
   Budget budget(0);
-  BudgetVector<std::uint32_t> pairs;
+  BudgetVector<FoundBond> pairs;
   BondSearch search;
   search.cutoff = 1.1;
   find_bonds(budget, source.points, search, pairs);
   source.found = pairs.data();
-  source.found_count = pairs.size() / 2;
-  expect_brute_force(source, pairs.size(), 4.0, 9.0, 4);
+  source.found_count = pairs.size();
+  expect_brute_force(source, 2 * pairs.size(), 4.0, 9.0, 4);
 }
 
 TEST(Sticks, ArrowsAgreeOneByOne) {
@@ -174,37 +174,53 @@ double shortest(const Cell& cell, const double d[3]) {
 
 TEST(BondSearch, FindsEveryPair) {
   for (const Shape shape : {Shape::uniform, Shape::clustered}) {
-    for (const int cell_kind : {0, 1, 2}) {  // none, straight, tilted
+    for (const int cell_kind : {0, 1, 2, 3}) {  // none, straight, tilted, tilted and smaller than the longest bond
       for (const double cutoff : {0.02, 0.1, 0.37}) {
         CounterRandom random(11);
-        std::vector<double> x = make_cloud(shape, 250, 1.0, random);
+        std::vector<double> x = make_cloud(shape, 140, 1.0, random);
         x[30] = std::numeric_limits<double>::quiet_NaN();
         for (int c = 0; c < 3; ++c) x[60 + c] = x[90 + c];  // two at one place: no bond
         ParticlePoints points = points_of(x);
         BondSearch search;
         search.cutoff = cutoff;
         if (cell_kind > 0) {
-          points.cell = some_cell(cell_kind == 2, 0.9);
+          if (cell_kind == 3)
+            for (double& v : x) v *= 0.4;
+          points.cell = some_cell(cell_kind >= 2, cell_kind == 3 ? 0.35 : 0.9);
           search.periodic = true;
         }
-        std::set<std::pair<std::uint32_t, std::uint32_t>> expected;
-        for (std::uint32_t i = 0; i < 250; ++i) {
-          for (std::uint32_t j = i + 1; j < 250; ++j) {
-            double d[3];
-            for (std::uint32_t c = 0; c < 3; ++c) d[c] = x[3 * j + c] - x[3 * i + c];
-            const double distance = search.periodic ? shortest(*points.cell, d) : std::hypot(d[0], d[1], d[2]);
-            if (distance > 0.0 && distance < cutoff) expected.insert({i, j});
+        // Each bond from either end, with the vector between the ends.
+        using Bond = std::tuple<std::uint32_t, std::uint32_t, int, int, int>;
+        std::set<Bond> expected;
+        for (std::uint32_t i = 0; i < 140; ++i) {
+          for (std::uint32_t j = 0; j < 140; ++j) {
+            for (int k = 0; k < (search.periodic ? 343 : 1); ++k) {
+              const int n[3] = {search.periodic ? k % 7 - 3 : 0, search.periodic ? k / 7 % 7 - 3 : 0,
+                                search.periodic ? k / 49 - 3 : 0};
+              double square = 0.0;
+              for (std::uint32_t c = 0; c < 3; ++c) {
+                double d = x[3 * j + c] - x[3 * i + c];
+                for (int v = 0; v < 3 && search.periodic; ++v) d += n[v] * points.cell->edge[v][c];
+                square += d * d;
+              }
+              if (square > 0.0 && square < cutoff * cutoff) expected.insert({i, j, n[0], n[1], n[2]});
+            }
           }
         }
         Budget budget(0);
-        BudgetVector<std::uint32_t> pairs;
+        BudgetVector<FoundBond> pairs;
         find_bonds(budget, points, search, pairs);
-        std::set<std::pair<std::uint32_t, std::uint32_t>> found;
-        for (std::uint64_t k = 0; k + 1 < pairs.size(); k += 2) found.insert({pairs.data()[k], pairs.data()[k + 1]});
-        EXPECT_EQ(found.size(), pairs.size() / 2) << "twice the same pair";
+        std::set<Bond> found;
+        for (std::uint64_t k = 0; k < pairs.size(); ++k) {
+          const FoundBond& bond = pairs.data()[k];
+          EXPECT_LE(bond.a, bond.b);
+          found.insert({bond.a, bond.b, bond.image[0], bond.image[1], bond.image[2]});
+          found.insert({bond.b, bond.a, -bond.image[0], -bond.image[1], -bond.image[2]});
+        }
+        EXPECT_EQ(found.size(), 2 * pairs.size()) << "twice the same bond";
         EXPECT_EQ(found, expected) << cell_kind << ' ' << cutoff;
         if (cutoff > 0.05) {
-          EXPECT_GT(expected.size(), 50u);
+          EXPECT_GT(expected.size(), 30u);
         }
         pairs.clear();
         EXPECT_EQ(budget.owned(), 0u);
@@ -222,23 +238,23 @@ TEST(BondSearch, RadiiSayHowNear) {
   search.radius.array = attribute_of(radius);
   search.radius_max = 1.6;
   Budget budget(0);
-  BudgetVector<std::uint32_t> pairs;
+  BudgetVector<FoundBond> pairs;
   for (const auto& [factor, count] : {std::pair{0.9, 0u}, {1.01, 2u}, {1.5, 3u}}) {
     search.by_radius = factor;
     find_bonds(budget, points, search, pairs);
-    EXPECT_EQ(pairs.size() / 2, count) << factor;
+    EXPECT_EQ(pairs.size(), count) << factor;
   }
 }
 
-TEST(BondSearch, RefusesBondsLongerThanHalfTheCell) {
+TEST(BondSearch, RefusesWhatHasNoEnd) {
   const std::vector<double> x = {0, 0, 0, 1, 0, 0};
   ParticlePoints points = points_of(x);
   points.cell = some_cell(true, 2.0);
   BondSearch search;
-  search.cutoff = 1.1;
+  search.cutoff = 30.0;
   search.periodic = true;
   Budget budget(0);
-  BudgetVector<std::uint32_t> pairs;
+  BudgetVector<FoundBond> pairs;
   EXPECT_THROW(find_bonds(budget, points, search, pairs), Error);
   Budget small(100);
   search.periodic = false;
