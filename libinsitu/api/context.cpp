@@ -140,11 +140,11 @@ void Context::update_particles(std::uint64_t id, const insitu_particles_desc& de
   need_step("insitu_particles_update");
   ParticleArrays arrays = read_particle_arrays(desc, geometry.particles.name(), geometry.particles.order());
   scene_dirty_ = true;
+  geometry.changed = true;
   geometry.particles.bind(std::move(arrays));
   if (is_null()) return;
   if (check_level_ >= INSITU_CHECK_VALUES) check_values(geometry);
-  if (check_level_ >= INSITU_CHECK_CHECKSUM)
-    geometry.checksum = workers_.run([&] { return geometry.particles.checksum(); });
+  if (check_level_ >= INSITU_CHECK_CHECKSUM) geometry.checksum = workers_.run([&] { return checksum_of(geometry); });
 }
 
 void Context::check_values(const GeometryObject& geometry) {
@@ -374,10 +374,14 @@ void Context::commit() {
     scene_.clear();  // holds what is built anew
     geometries_.for_each([this](std::uint64_t, GeometryObject& geometry) {
       build(geometry);
-      if (is_drawn(geometry) && !geometry.glyphs) build_cell(geometry);
+      if (!geometry.glyphs && geometry.changed && is_drawn(geometry)) build_cell(geometry);
     });
     geometries_.for_each([this](std::uint64_t, GeometryObject& geometry) {
-      if (geometry.glyphs && is_drawn(geometry)) build_glyphs(geometry);
+      if (!geometry.glyphs || !is_drawn(geometry)) return;
+      if (particle_set(geometry.glyphs->set()).changed || !geometry.glyphs->is_built()) build_glyphs(geometry);
+    });
+    geometries_.for_each([](std::uint64_t, GeometryObject& geometry) {
+      if (geometry.particles.is_built()) geometry.changed = false;
     });
     scene_dirty_ = true;
     refresh_scene();
@@ -418,8 +422,8 @@ insitu_status Context::end_step() {
   if (!in_step_) throw Error(INSITU_ERROR_WRONG_STATE, "insitu_step_end without insitu_step_begin");
   if (check_level_ >= INSITU_CHECK_CHECKSUM && !is_null()) {
     geometries_.for_each([this](std::uint64_t, GeometryObject& geometry) {
-      if (!geometry.particles.is_bound()) return;
-      if (workers_.run([&] { return geometry.particles.checksum(); }) != geometry.checksum)
+      if (!geometry.particles.is_bound() && !(geometry.glyphs && geometry.glyphs->takes_part())) return;
+      if (workers_.run([&] { return checksum_of(geometry); }) != geometry.checksum)
         fail(INSITU_ERROR_WRONG_STATE,
              (geometry.particles.name() + ": values of its arrays changed between the update and insitu_step_end")
                  .c_str());

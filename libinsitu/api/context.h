@@ -26,6 +26,7 @@ struct GeometryObject {
   Style style;
   bool style_is_default = false;  // of vectors: follows the attribute
   std::optional<CellDisplay> cell;
+  bool changed = true;   // arrays or cell, since the last commit
   ShownCell shown_cell;  // as of the last commit of the step
   std::unique_ptr<Glyphs> glyphs;
   std::uint64_t checksum = 0;  // of the bound arrays, with INSITU_CHECK_CHECKSUM
@@ -122,6 +123,9 @@ class Context {
   void build_glyphs(GeometryObject& object);
   void each_shown(const GeometryObject& object, const std::function<void(const Geometry&, const glm::dvec3&)>& action);
   void fill_scene();
+  static std::uint64_t checksum_of(const GeometryObject& object) {
+    return object.glyphs ? object.glyphs->checksum() : object.particles.checksum();
+  }
   void destroy_glyphs_of(std::uint64_t set);
   const Colormap& colormap_of(const Style& style);
   insitu_status write_report();

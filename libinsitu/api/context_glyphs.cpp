@@ -13,6 +13,7 @@ GeometryObject& Context::particle_set(std::uint64_t id) {
 
 void Context::set_cell(std::uint64_t id, const insitu_cell* cell) {
   GeometryObject& geometry = particle_set(id);
+  geometry.changed = true;
   if (cell == nullptr) {
     geometry.cell.reset();
     return;
@@ -28,6 +29,7 @@ std::uint64_t Context::create_glyphs(std::uint64_t set, const std::string& name,
   object->glyphs = std::make_unique<Glyphs>(set);
   make(*object);
   scene_dirty_ = true;
+  if (check_level_ >= INSITU_CHECK_CHECKSUM) object->checksum = checksum_of(*object);
   return geometries_.insert(std::move(object));
 }
 
@@ -47,6 +49,7 @@ void Context::update_bonds(std::uint64_t id, const insitu_bonds_desc& desc) {
   scene_dirty_ = true;
   object.glyphs->release();
   object.glyphs->bonds = std::move(settings);
+  if (check_level_ >= INSITU_CHECK_CHECKSUM) object.checksum = checksum_of(object);
 }
 
 std::uint64_t Context::create_vectors(const insitu_vectors_desc& desc) {

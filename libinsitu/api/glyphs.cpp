@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "core/error.h"
 
@@ -90,6 +91,21 @@ void ShownCell::each_instance(const Particles& particles,
 
 std::uint64_t Glyphs::borrowed_bytes() const {
   return bonds && bonds->pairs ? bonds->pairs->count * 2 * kernels::size_of(bonds->pairs->type) : 0;
+}
+
+// FNV-1a (Fowler, Noll, Vo), over whole indices.
+std::uint64_t Glyphs::checksum() const {
+  if (!bonds || !bonds->pairs) return 0;
+  const kernels::ArrayView& pairs = *bonds->pairs;
+  std::uint64_t sum = 0xcbf29ce484222325;
+  for (std::uint64_t pair = 0; pair < pairs.count; ++pair) {
+    for (std::uint32_t c = 0; c < 2; ++c) {
+      std::uint64_t value = 0;
+      std::memcpy(&value, pairs.address(pair, c), kernels::size_of(pairs.type));
+      sum = (sum ^ value) * 0x100000001b3;
+    }
+  }
+  return sum;
 }
 
 void Glyphs::check(const std::string& name, const Particles& particles) const {

@@ -83,6 +83,8 @@ class Glyphs {
 
   bool takes_part() const { return vectors || (bonds && (!bonds->by_pairs || bonds->pairs)); }
   std::uint64_t borrowed_bytes() const;
+  // Changes when a bit of the borrowed pairs does; 0 without pairs.
+  std::uint64_t checksum() const;
   // What can be told before anything is built. Throws Error.
   void check(const std::string& name, const Particles& particles) const;
   // Returns a sentence about what could not be drawn, or nothing. Call within the workers. Throws Error.

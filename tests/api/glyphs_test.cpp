@@ -531,6 +531,76 @@ TEST(Glyphs, PairsOfAPermutedSetAreRefused) {
   insitu_step_end(studio.context);
 }
 
+// With a checksum of every borrowed array, a change of the pairs within the step is seen.
+TEST(Glyphs, ChangedPairsAreSeen) {
+  for (const bool change : {false, true}) {
+    const Context context(0, 0, 0, INSITU_CHECK_CHECKSUM);
+    const insitu_geometry set = testing::make_particles(context);
+    const Cloud cloud(20);
+    std::vector<std::int32_t> some = {0, 1, 2, 3};
+    const insitu_array pairs = pairs_of(some);
+    insitu_bonds_desc bonds;
+    insitu_bonds_desc_init(&bonds);
+    bonds.particles = set;
+    bonds.pairs = &pairs;
+    insitu_geometry sticks = {0};
+    for (int step = 0; step < 2; ++step) {  // created, then updated
+      some[3] = 3;
+      insitu_step_begin(context, static_cast<std::uint64_t>(step), 0.0);
+      insitu_particles_update(context, set, &cloud.desc);
+      EXPECT_TRUE(works(context, step == 0 ? insitu_bonds_create(context, &bonds, &sticks)
+                                           : insitu_bonds_update(context, sticks, &bonds)));
+      EXPECT_TRUE(works(context, insitu_commit(context)));
+      if (change) some[3] = 4;
+      const insitu_status status = insitu_step_end(context);
+      if (change) {
+        EXPECT_TRUE(fails(context, status, INSITU_ERROR_WRONG_STATE, {"bonds", "changed"}));
+      } else {
+        EXPECT_TRUE(works(context, status));
+      }
+    }
+  }
+}
+
+// What a commit finds as the one before left it costs and warns nothing again; a new cell counts at the next one.
+TEST(Glyphs, FurtherCommitsBuildWhatChanged) {
+  testing::Studio studio;
+  const insitu_context context = studio.context;
+  std::string warnings;
+  const auto keep = [](void* user, std::int32_t, const char* text) { *static_cast<std::string*>(user) += text; };
+  EXPECT_TRUE(works(context, insitu_context_set_log(context, keep, &warnings, INSITU_LOG_WARNING)));
+  const Cloud cloud(50);
+  const std::vector<std::int32_t> some = {0, 1, 2, -1};
+  const insitu_array pairs = pairs_of(some);
+  insitu_bonds_desc bonds;
+  insitu_bonds_desc_init(&bonds);
+  bonds.particles = studio.geometry;
+  bonds.pairs = &pairs;
+  insitu_geometry sticks = {0};
+  insitu_step_begin(context, 0, 0.0);
+  insitu_particles_update(context, studio.geometry, &cloud.desc);
+  EXPECT_TRUE(works(context, insitu_bonds_create(context, &bonds, &sticks)));
+  EXPECT_TRUE(works(context, insitu_commit(context)));
+  EXPECT_NE(warnings, "");
+  warnings.clear();
+  const std::uint64_t borrowed = studio.context.stats().borrowed_bytes;
+  EXPECT_TRUE(works(context, insitu_commit(context)));
+  EXPECT_EQ(warnings, "");
+  EXPECT_EQ(studio.context.stats().borrowed_bytes, borrowed);
+  insitu_cell cell = unit_cell();
+  cell.replicate[0] = 3;
+  double lower[3];
+  double upper[3];
+  EXPECT_TRUE(works(context, insitu_particles_set_cell(context, studio.geometry, &cell)));
+  EXPECT_TRUE(works(context, insitu_geometry_bounds(context, sticks, lower, upper)));
+  EXPECT_LT(upper[0], 1.5);
+  EXPECT_TRUE(works(context, insitu_commit(context)));
+  EXPECT_TRUE(works(context, insitu_geometry_bounds(context, sticks, lower, upper)));
+  EXPECT_GT(upper[0], 2.0);
+  EXPECT_TRUE(works(context, insitu_render(context, studio.view, studio.image)));
+  EXPECT_TRUE(works(context, insitu_step_end(context)));
+}
+
 // Steps in which the set, or the pairs, are missing; a cap on memory; nothing is kept.
 TEST(Glyphs, StepsComeAndGo) {
   testing::Studio studio;
