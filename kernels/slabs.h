@@ -31,8 +31,12 @@ struct RaySlabs {
     slack = 16.0 * 2.220446049250313e-16 * largest;
   }
 
-  // Where the ray enters the box, or infinity when it does not meet it between t_min and t_max.
-  double enter(const double lower[3], const double upper[3], double t_min, double t_max) const {
+  struct Span {
+    double enter;
+    double leave;
+    bool meets;  // between t_min and t_max
+  };
+  Span span(const double lower[3], const double upper[3], double t_min, double t_max) const {
     double near = t_min;
     double far = t_max;
     for (int c = 0; c < 3; ++c) {
@@ -45,8 +49,15 @@ struct RaySlabs {
     // Some roundings of the products.
     constexpr double more = 1.0 + 1e-14;
     constexpr double less = 1.0 - 1e-14;
-    const bool meets = (near > 0.0 ? near * less : near * more) <= (far > 0.0 ? far * more : far * less);
-    return meets ? near : std::numeric_limits<double>::infinity();
+    near = near > 0.0 ? near * less : near * more;
+    far = far > 0.0 ? far * more : far * less;
+    return {near, far, near <= far};
+  }
+
+  // Where the ray enters the box, or infinity when it does not meet it between t_min and t_max.
+  double enter(const double lower[3], const double upper[3], double t_min, double t_max) const {
+    const Span at = span(lower, upper, t_min, t_max);
+    return at.meets ? at.enter : std::numeric_limits<double>::infinity();
   }
 };
 

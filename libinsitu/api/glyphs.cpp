@@ -155,9 +155,10 @@ std::string Glyphs::build_bonds(Budget& budget, const Particles& particles, cons
   }
   const std::uint64_t pairs = source.pair_count();
   if (pairs >= most) throw Error(INSITU_ERROR_UNSUPPORTED, "bonds: more than 2^31 - 1 pairs");
-  std::uint64_t bad = 0;
-  for (std::uint64_t pair = 0; pair < pairs; ++pair) bad += source.is_good(pair) ? 0 : 1;
   bond_sticks_.build(budget, std::move(source), 2 * pairs, "the tree over the bonds");
+  // Whatever is drawn of a pair has a first half, or is one.
+  std::uint64_t bad = pairs;
+  for (std::uint64_t i = 0; i < bond_sticks_.drawn_count(); ++i) bad -= bond_sticks_.drawn_ids()[i] % 2 == 0 ? 1 : 0;
   if (bad == 0) return {};
   return std::to_string(bad) + " of " + std::to_string(pairs) +
          " bonds are not drawn: an index is out of range, both ends are the same, or a position is not finite";

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <mutex>
-#include <set>
 
 #include "core/error.h"
 #include "kernels/slabs.h"
@@ -20,32 +20,13 @@ constexpr std::size_t batch = 256;
 
 }  // namespace
 
-ParticleImage::ParticleImage(const Particles& particles, const Cell& cell, const std::array<double, 3>& image)
-    : particles_(particles), cell_(cell), image_(image), lower_{}, upper_{} {
-  particles.bounds(lower_, upper_);
-  // Whatever has its centre in the image lies in the box around its corners, by the largest radius larger.
-  double low[3];
-  double high[3];
+ParticleImage::ParticleImage(const Particles& particles, const Cell& cell, const OccupiedImage& image)
+    : particles_(particles), cell_(cell), image_(image.image), lower_{}, upper_{} {
+  const double radius = particles.tree().radius_max * particles.position_scale();
   for (int c = 0; c < 3; ++c) {
-    low[c] = std::numeric_limits<double>::infinity();
-    high[c] = -low[c];
-  }
-  for (int corner = 0; corner < 8; ++corner) {
-    double count[3];
-    double offset[3];
-    for (int i = 0; i < 3; ++i) count[i] = image[static_cast<std::size_t>(i)] + (corner >> i & 1);
-    cell.offset_of(count, offset);
-    for (int c = 0; c < 3; ++c) {
-      low[c] = std::min(low[c], cell.origin[c] + offset[c]);
-      high[c] = std::max(high[c], cell.origin[c] + offset[c]);
-    }
-  }
-  // Along axes that do not repeat the cell has no end: the bounds of the particles stay there.
-  const bool all = cell.periodic[0] && cell.periodic[1] && cell.periodic[2];
-  for (int c = 0; c < 3 && all; ++c) {
-    const double reach = particles.tree().radius_max * particles.position_scale() + 1e-6 * (high[c] - low[c]);
-    lower_[c] = std::max(lower_[c], low[c] - reach);
-    upper_[c] = std::min(upper_[c], high[c] + reach);
+    const double reach = radius + 1e-9 * (image.upper[c] - image.lower[c] + radius);
+    lower_[c] = image.lower[c] - reach;
+    upper_[c] = image.upper[c] + reach;
   }
 }
 
@@ -73,10 +54,12 @@ void ParticleImage::first_hits(const kernels::Ray* rays, kernels::Hit* hits, std
     for (std::size_t i = begin; i < std::min(count, begin + batch); ++i) {
       kernels::Ray ray = rays[i];
       ray.t_max = std::min(ray.t_max, hits[i].t);
-      // Nothing of this image begins before the ray enters its box.
-      const double enter = kernels::RaySlabs(ray.origin, ray.direction).enter(lower_, upper_, ray.t_min, ray.t_max);
-      if (enter == std::numeric_limits<double>::infinity()) continue;
-      ray.t_min = std::max(ray.t_min, enter > 0.0 ? enter * (1.0 - 1e-12) : enter);
+      // All of this image lies within its box.
+      const kernels::RaySlabs::Span box =
+          kernels::RaySlabs(ray.origin, ray.direction).span(lower_, upper_, ray.t_min, ray.t_max);
+      if (!box.meets) continue;
+      ray.t_min = std::max(ray.t_min, box.enter);
+      ray.t_max = std::min(ray.t_max, box.leave);
       place[n] = i;
       going[n++] = ray;
     }
@@ -117,34 +100,39 @@ void ParticleImage::any_hits(const kernels::Ray* rays, std::uint8_t* occluded, s
   }
 }
 
-std::vector<std::array<double, 3>> occupied_images(const Particles& particles, const Cell& cell) {
-  using Image = std::array<double, 3>;
-  std::set<Image> images;
+std::vector<OccupiedImage> occupied_images(const Particles& particles, const Cell& cell) {
+  using Images = std::map<std::array<double, 3>, OccupiedImage>;
+  Images images;
   std::mutex mutex;
-  const auto refuse = [] {
-    throw Error(INSITU_ERROR_UNSUPPORTED, "wrapping into the cell: the particles lie in more than 4096 images of it");
+  const auto check = [](const Images& some) {
+    if (some.size() > most_images)
+      throw Error(INSITU_ERROR_UNSUPPORTED, "wrapping into the cell: the particles lie in more than 4096 images of it");
+  };
+  const auto include = [](Images& some, const OccupiedImage& one) {
+    OccupiedImage& box = some.try_emplace(one.image, one).first->second;
+    for (int c = 0; c < 3; ++c) {
+      box.lower[c] = std::min(box.lower[c], one.lower[c]);
+      box.upper[c] = std::max(box.upper[c], one.upper[c]);
+    }
   };
   tbb::parallel_for(tbb::blocked_range<std::uint64_t>(0, particles.item_count(), 1 << 14), [&](const auto& range) {
-    std::set<Image> own;
-    Image last{};
-    bool any = false;
+    Images own;
     for (std::uint64_t item = range.begin(); item < range.end(); ++item) {
-      double centre[3];
-      Image image;
-      particles.centre(item, centre);
-      if (!(std::abs(centre[0]) <= 1e100 && std::abs(centre[1]) <= 1e100 && std::abs(centre[2]) <= 1e100)) continue;
-      cell.image_of(centre, image.data());
-      if (any && image == last) continue;
-      any = true;
-      last = image;
-      own.insert(image);
-      if (own.size() > most_images) refuse();
+      OccupiedImage at;
+      particles.centre(item, at.lower);
+      if (!std::all_of(at.lower, at.lower + 3, [](double x) { return std::abs(x) <= 1e100; })) continue;
+      std::copy_n(at.lower, 3, at.upper);
+      cell.image_of(at.lower, at.image.data());
+      include(own, at);
+      check(own);
     }
     const std::lock_guard<std::mutex> lock(mutex);
-    images.merge(own);
+    for (const auto& [image, box] : own) include(images, box);
   });
-  if (images.size() > most_images) refuse();
-  return {images.begin(), images.end()};
+  check(images);
+  std::vector<OccupiedImage> list;
+  for (const auto& [image, box] : images) list.push_back(box);
+  return list;
 }
 
 }  // namespace insitu

@@ -9,9 +9,16 @@
 
 namespace insitu {
 
+// An image of the cell in which particles lie, and the box of their centres.
+struct OccupiedImage {
+  std::array<double, 3> image;
+  double lower[3];
+  double upper[3];
+};
+
 class ParticleImage final : public Geometry {
  public:
-  ParticleImage(const Particles& particles, const Cell& cell, const std::array<double, 3>& image);
+  ParticleImage(const Particles& particles, const Cell& cell, const OccupiedImage& image);
 
   const std::array<double, 3>& image() const { return image_; }
 
@@ -32,6 +39,6 @@ class ParticleImage final : public Geometry {
 
 // The images of the cell in which particles of the set lie, in ascending order. Call within the workers.
 // Throws Error(unsupported) when there are more than 4096.
-std::vector<std::array<double, 3>> occupied_images(const Particles& particles, const Cell& cell);
+std::vector<OccupiedImage> occupied_images(const Particles& particles, const Cell& cell);
 
 }  // namespace insitu

@@ -72,11 +72,6 @@ bool BondSource::stick(std::uint64_t id, kernels::Stick& out) const {
   return has_length;
 }
 
-bool BondSource::is_good(std::uint64_t pair) const {
-  kernels::Stick stick;
-  return this->stick(2 * pair, stick);
-}
-
 std::uint64_t BondSource::color_item(std::uint64_t id, double along) const {
   Ends ends;
   if (!ends_of(id / 2, ends)) return 0;

@@ -26,10 +26,7 @@ struct BondSource {
   kernels::StickEnds ends = kernels::StickEnds::round;
 
   std::uint64_t pair_count() const { return found != nullptr ? found_count : pairs.count; }
-  // Can the pair be drawn? False: an index out of range, twice the same one or the same place, a point that is not
-  // finite.
-  bool is_good(std::uint64_t pair) const;
-
+  // False for an index out of range, twice the same one or the same place, a point that is not finite.
   bool stick(std::uint64_t id, kernels::Stick& out) const;
   // Pairs of the caller are shown by their place in his array, those found here by the particle at the nearer end.
   std::uint64_t shown_item(std::uint64_t id, double along) const {

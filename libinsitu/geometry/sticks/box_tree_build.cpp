@@ -1,7 +1,7 @@
 #include "geometry/sticks/box_tree_build.h"
 
-#include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
@@ -35,11 +35,7 @@ class Builder {
       for (std::uint64_t p = tree_.place(level, i); p < tree_.place(level, i + 1); ++p) include(box, boxes_[order_[p]]);
       return box;
     }
-    // Eight children by three halvings.
-    for (unsigned width = kernels::box_fanout; width > 1; width /= 2)
-      for (unsigned k = 0; k < kernels::box_fanout; k += width)
-        halve(tree_.place(level + 1, 8 * i + k), tree_.place(level + 1, 8 * i + k + width / 2),
-              tree_.place(level + 1, 8 * i + k + width));
+    deal(level + 1, 8 * i, kernels::box_fanout);
     ItemBox children[kernels::box_fanout];
     if (tree_.place(level, i + 1) - tree_.place(level, i) > 4096) {
       tbb::parallel_for(0u, kernels::box_fanout, [&](unsigned k) { children[k] = build(level + 1, 8 * i + k); });
@@ -65,6 +61,23 @@ class Builder {
     return (static_cast<double>(nearest) - value) * towards >= 0.0
                ? nearest
                : std::nextafter(nearest, static_cast<float>(3.0 * towards));
+  }
+
+  // Sorts the places of `nodes` nodes of a level among them, by halving.
+  void deal(unsigned level, std::uint64_t first, unsigned nodes) {
+    if (nodes == 1) return;
+    const unsigned half = nodes / 2;
+    const std::uint64_t begin = tree_.place(level, first);
+    const std::uint64_t end = tree_.place(level, first + nodes);
+    halve(begin, tree_.place(level, first + half), end);
+    const auto low = [&] { deal(level, first, half); };
+    const auto high = [&] { deal(level, first + half, half); };
+    if (end - begin > 4096) {
+      tbb::parallel_invoke(low, high);
+    } else {
+      low();
+      high();
+    }
   }
 
   // Puts those with the smaller middles, along the axis on which middles differ most, before `mid`.

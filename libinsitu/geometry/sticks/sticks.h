@@ -8,6 +8,8 @@
 // with ids below 2^32.
 #pragma once
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -35,17 +37,32 @@ class Sticks final : public Geometry {
   const Source& source() const { return source_; }
   std::uint64_t bytes() const { return store_.bytes(); }
   std::uint64_t drawn_count() const { return store_.tree().count; }
+  const std::uint32_t* drawn_ids() const { return store_.ids(); }  // in no particular order
 
   // Of the ids below `end`. Call within the workers. Throws Error(over_budget).
   void build(Budget& budget, Source source, std::uint64_t end, const char* what) {
     source_ = std::move(source);
+    // In parts, put together in their order.
+    constexpr std::uint64_t part = 1 << 14;
+    struct Part {
+      std::vector<ItemBox> boxes;
+      std::vector<std::uint32_t> ids;
+    };
+    std::vector<Part> parts((end + part - 1) / part);
+    tbb::parallel_for(std::uint64_t{0}, std::uint64_t{parts.size()}, [&](std::uint64_t p) {
+      kernels::Stick stick;
+      for (std::uint64_t id = p * part; id < std::min(end, (p + 1) * part); ++id) {
+        if (!source_.stick(id, stick)) continue;
+        parts[p].boxes.push_back(box_of(stick));
+        parts[p].ids.push_back(static_cast<std::uint32_t>(id));
+      }
+    });
     std::vector<ItemBox> boxes;
     std::vector<std::uint32_t> ids;
-    kernels::Stick stick;
-    for (std::uint64_t id = 0; id < end; ++id) {
-      if (!source_.stick(id, stick)) continue;
-      boxes.push_back(box_of(stick));
-      ids.push_back(static_cast<std::uint32_t>(id));
+    for (Part& p : parts) {
+      boxes.insert(boxes.end(), p.boxes.begin(), p.boxes.end());
+      ids.insert(ids.end(), p.ids.begin(), p.ids.end());
+      p = {};
     }
     store_.build(budget, std::move(boxes), ids, what);
   }
