@@ -35,20 +35,19 @@ std::uint64_t Context::create_glyphs(std::uint64_t set, const std::string& name,
 
 std::uint64_t Context::create_bonds(const insitu_bonds_desc& desc) {
   const std::string name = desc.name == nullptr ? "bonds" : desc.name;
-  BondSettings settings = read_bonds(desc, name);
+  const BondSettings settings = read_bonds(desc, name);
   if (settings.by_pairs) need_step("insitu_bonds_create with pairs");
-  return create_glyphs(desc.particles.id, name,
-                       [&](GeometryObject& object) { object.glyphs->bonds = std::move(settings); });
+  return create_glyphs(desc.particles.id, name, [&](GeometryObject& object) { object.glyphs->bonds = settings; });
 }
 
 void Context::update_bonds(std::uint64_t id, const insitu_bonds_desc& desc) {
   GeometryObject& object = geometries_.get(id);
   if (!object.glyphs || !object.glyphs->bonds) throw Error(INSITU_ERROR_INVALID_HANDLE, "this geometry is not bonds");
-  BondSettings settings = read_bonds(desc, object.particles.name());
+  const BondSettings settings = read_bonds(desc, object.particles.name());
   if (settings.by_pairs) need_step("insitu_bonds_update with pairs");
   scene_dirty_ = true;
   object.glyphs->release();
-  object.glyphs->bonds = std::move(settings);
+  object.glyphs->bonds = settings;
   if (check_level_ >= INSITU_CHECK_CHECKSUM) object.checksum = checksum_of(object);
 }
 

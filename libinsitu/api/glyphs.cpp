@@ -127,7 +127,7 @@ void Glyphs::check(const std::string& name, const Particles& particles) const {
 std::string Glyphs::build(Budget& budget, const Particles& particles, const CellDisplay* cell) {
   built_ = false;
   const ParticlePoints points = points_of(particles, cell);
-  const std::string text = bonds ? build_bonds(budget, particles, points) : build_arrows(budget, particles, points);
+  std::string text = bonds ? build_bonds(budget, particles, points) : build_arrows(budget, particles, points);
   built_ = true;
   return text;
 }
@@ -155,7 +155,7 @@ std::string Glyphs::build_bonds(Budget& budget, const Particles& particles, cons
   }
   const std::uint64_t pairs = source.pair_count();
   if (pairs >= most) throw Error(INSITU_ERROR_UNSUPPORTED, "bonds: more than 2^31 - 1 pairs");
-  bond_sticks_.build(budget, std::move(source), 2 * pairs, "the tree over the bonds");
+  bond_sticks_.build(budget, source, 2 * pairs, "the tree over the bonds");
   // Whatever is drawn of a pair has a first half, or is one.
   std::uint64_t bad = pairs;
   for (std::uint64_t i = 0; i < bond_sticks_.drawn_count(); ++i) bad -= bond_sticks_.drawn_ids()[i] % 2 == 0 ? 1 : 0;
@@ -182,7 +182,7 @@ std::string Glyphs::build_arrows(Budget& budget, const Particles& particles, con
   source.centred = (vectors->flags & INSITU_VECTORS_CENTRED) != 0;
   std::uint64_t bad = 0;
   for (std::uint64_t item = 0; item < count; ++item) bad += source.is_good(item) ? 0 : 1;
-  arrows_.build(budget, std::move(source), 2 * count, "the tree over the arrows");
+  arrows_.build(budget, source, 2 * count, "the tree over the arrows");
   if (bad == 0) return {};
   return std::to_string(bad) + " of " + std::to_string(count) +
          " arrows are not drawn: the vector or the position is not finite, or above 1e100";

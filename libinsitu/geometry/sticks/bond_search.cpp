@@ -16,7 +16,12 @@ namespace {
 constexpr std::uint64_t most_bonds = std::uint64_t{1} << 31;
 constexpr std::uint32_t no_cell = ~0u;
 constexpr double most_images = 10.0;
-constexpr double from_zero[3] = {};
+
+// One of each two opposite vectors.
+bool points_backwards(const double d[3]) {
+  if (d[0] != 0.0) return d[0] < 0.0;
+  return d[1] != 0.0 ? d[1] < 0.0 : d[2] < 0.0;
+}
 
 // Cells along the edges of the simulation's cell where that repeats, else of the box of the particles.
 class Grid {
@@ -152,7 +157,7 @@ void find_bonds(Budget& budget, const ParticlePoints& points, const BondSearch& 
 
   // action(bond) for every bond of which `item` is the smaller end, in no particular order.
   const auto each_bond = [&](std::uint64_t item, auto&& action) {
-    double from[3];
+    double from[3] = {};
     double image_from[3];
     std::int32_t at[3];
     if (!points.point(item, from)) return;
@@ -162,7 +167,7 @@ void find_bonds(Budget& budget, const ParticlePoints& points, const BondSearch& 
       for (std::uint32_t k = first.data()[cell]; k < first.data()[cell + 1]; ++k) {
         const std::uint32_t other = sorted.data()[k];
         if (other < item) continue;
-        double d[3];
+        double d[3] = {};
         points.point(other, d);
         double image[3] = {};
         if (search.periodic) {
@@ -177,7 +182,7 @@ void find_bonds(Budget& budget, const ParticlePoints& points, const BondSearch& 
           for (int c = 0; c < 3; ++c) d[c] -= from[c];
         }
         // Of a particle and its own images one of each two opposite ones.
-        if (other == item && !std::lexicographical_compare(d, d + 3, from_zero, from_zero + 3)) continue;
+        if (other == item && !points_backwards(d)) continue;
         const double distance = std::hypot(d[0], d[1], d[2]);
         const double most = search.cutoff > 0.0
                                 ? search.cutoff

@@ -120,7 +120,7 @@ void BoxTreeStore::clear() {
   bounds_ = nothing;
 }
 
-void BoxTreeStore::build(Budget& budget, std::vector<ItemBox> boxes, const std::vector<std::uint32_t>& ids,
+void BoxTreeStore::build(Budget& budget, const std::vector<ItemBox>& boxes, const std::vector<std::uint32_t>& ids,
                          const char* what) {
   clear();
   const std::uint64_t count = boxes.size();

@@ -16,7 +16,8 @@ class BoxTreeStore {
  public:
   // Item ids become index() in the order of the tree. Call within the workers; the result does not depend on threads.
   // Throws Error(over_budget).
-  void build(Budget& budget, std::vector<ItemBox> boxes, const std::vector<std::uint32_t>& ids, const char* what);
+  void build(Budget& budget, const std::vector<ItemBox>& boxes, const std::vector<std::uint32_t>& ids,
+             const char* what);
   void clear();
 
   const kernels::BoxTree& tree() const { return tree_; }

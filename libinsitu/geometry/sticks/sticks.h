@@ -40,8 +40,8 @@ class Sticks final : public Geometry {
   const std::uint32_t* drawn_ids() const { return store_.ids(); }  // in no particular order
 
   // Of the ids below `end`. Call within the workers. Throws Error(over_budget).
-  void build(Budget& budget, Source source, std::uint64_t end, const char* what) {
-    source_ = std::move(source);
+  void build(Budget& budget, const Source& source, std::uint64_t end, const char* what) {
+    source_ = source;
     // In parts, put together in their order.
     constexpr std::uint64_t part = 1 << 14;
     struct Part {
@@ -64,7 +64,7 @@ class Sticks final : public Geometry {
       ids.insert(ids.end(), p.ids.begin(), p.ids.end());
       p = {};
     }
-    store_.build(budget, std::move(boxes), ids, what);
+    store_.build(budget, boxes, ids, what);
   }
   // Forgets the source; the memory is kept for the next step.
   void release() {
