@@ -177,7 +177,7 @@ TEST(BondSearch, FindsEveryPair) {
     for (const int cell_kind : {0, 1, 2, 3}) {  // none, straight, tilted, tilted and smaller than the longest bond
       for (const double cutoff : {0.02, 0.1, 0.37}) {
         CounterRandom random(11);
-        std::vector<double> x = make_cloud(shape, 140, 1.0, random);
+        std::vector<double> x = make_cloud(shape, 90, 1.0, random);
         x[30] = std::numeric_limits<double>::quiet_NaN();
         for (int c = 0; c < 3; ++c) x[60 + c] = x[90 + c];  // two at one place: no bond
         ParticlePoints points = points_of(x);
@@ -192,8 +192,8 @@ TEST(BondSearch, FindsEveryPair) {
         // Each bond from either end, with the vector between the ends.
         using Bond = std::tuple<std::uint32_t, std::uint32_t, int, int, int>;
         std::set<Bond> expected;
-        for (std::uint32_t i = 0; i < 140; ++i) {
-          for (std::uint32_t j = 0; j < 140; ++j) {
+        for (std::uint32_t i = 0; i < 90; ++i) {
+          for (std::uint32_t j = 0; j < 90; ++j) {
             for (int k = 0; k < (search.periodic ? 343 : 1); ++k) {
               const int n[3] = {search.periodic ? k % 7 - 3 : 0, search.periodic ? k / 7 % 7 - 3 : 0,
                                 search.periodic ? k / 49 - 3 : 0};
@@ -220,7 +220,7 @@ TEST(BondSearch, FindsEveryPair) {
         EXPECT_EQ(found.size(), 2 * pairs.size()) << "twice the same bond";
         EXPECT_EQ(found, expected) << cell_kind << ' ' << cutoff;
         if (cutoff > 0.05) {
-          EXPECT_GT(expected.size(), 30u);
+          EXPECT_GT(expected.size(), 10u);
         }
         pairs.clear();
         EXPECT_EQ(budget.owned(), 0u);
