@@ -54,8 +54,8 @@ class Scene {
   void any_hits(const SceneRay* rays, std::uint8_t* occluded, std::size_t count) const;
 
   // Up to so many entries are traced one after another, each with the rays that meet its box; more of them stand as
-  // boxes in an Embree scene, which rays go through one by one. Measured: frames of 2, 4, 27 and 64 sets took 0.50,
-  // 0.55, 0.84 and 1.3 times as long in turn.
+  // boxes in an Embree scene, which rays go through one by one. Measured: frames of 2, 4, 27 and 64 sets took 0.51,
+  // 0.55, 0.85 and 1.3 times as long in turn (medians of five runs on one thread).
   static constexpr std::size_t most_in_turn = 32;
 
  private:
