@@ -198,6 +198,33 @@ insitu_status insitu_geometry_destroy(insitu_context context, insitu_geometry ge
   return always(context, [&](Context& c) { c.destroy_geometry(geometry.id); });
 }
 
+insitu_status insitu_particles_set_cell(insitu_context context, insitu_geometry particles, const insitu_cell* cell) {
+  return call(context, [&](Context& c) {
+    if (cell == nullptr) return c.set_cell(particles.id, nullptr);
+    const insitu_cell own = copy_in(cell, "insitu_cell");
+    c.set_cell(particles.id, &own);
+  });
+}
+
+insitu_status insitu_bonds_create(insitu_context context, const insitu_bonds_desc* desc, insitu_geometry* out) {
+  if (out != nullptr) out->id = 0;
+  return call(context, [&](Context& c) { output(out, "out").id = c.create_bonds(copy_in(desc, "insitu_bonds_desc")); });
+}
+
+insitu_status insitu_bonds_update(insitu_context context, insitu_geometry bonds, const insitu_bonds_desc* desc) {
+  return call(context, [&](Context& c) { c.update_bonds(bonds.id, copy_in(desc, "insitu_bonds_desc")); });
+}
+
+insitu_status insitu_vectors_create(insitu_context context, const insitu_vectors_desc* desc, insitu_geometry* out) {
+  if (out != nullptr) out->id = 0;
+  return call(context,
+              [&](Context& c) { output(out, "out").id = c.create_vectors(copy_in(desc, "insitu_vectors_desc")); });
+}
+
+insitu_status insitu_vectors_update(insitu_context context, insitu_geometry vectors, const insitu_vectors_desc* desc) {
+  return call(context, [&](Context& c) { c.update_vectors(vectors.id, copy_in(desc, "insitu_vectors_desc")); });
+}
+
 insitu_status insitu_colormap_create(insitu_context context, const insitu_colormap_desc* desc, insitu_colormap* out) {
   if (out != nullptr) out->id = 0;
   return call(context,

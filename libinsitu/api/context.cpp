@@ -155,15 +155,15 @@ std::uint64_t Context::create_particles(const insitu_particles_desc& desc) {
 }
 
 void Context::update_particles(std::uint64_t id, const insitu_particles_desc& desc) {
-  GeometryObject& geometry = geometries_.get(id);
+  GeometryObject& geometry = particle_set(id);
   need_step("insitu_particles_update");
   ParticleArrays arrays = read_particle_arrays(desc, geometry.particles.name(), geometry.particles.order());
   scene_dirty_ = true;
+  geometry.changed = true;
   geometry.particles.bind(std::move(arrays));
   if (is_null()) return;
   if (check_level_ >= INSITU_CHECK_VALUES) check_values(geometry);
-  if (check_level_ >= INSITU_CHECK_CHECKSUM)
-    geometry.checksum = workers_.run([&] { return geometry.particles.checksum(); });
+  if (check_level_ >= INSITU_CHECK_CHECKSUM) geometry.checksum = workers_.run([&] { return checksum_of(geometry); });
 }
 
 void Context::check_values(const GeometryObject& geometry) {
@@ -172,7 +172,7 @@ void Context::check_values(const GeometryObject& geometry) {
 }
 
 void Context::permutation(std::uint64_t id, std::uint64_t* original, std::uint64_t count) {
-  const GeometryObject& geometry = geometries_.get(id);
+  const GeometryObject& geometry = particle_set(id);
   need_commit("insitu_particles_permutation");
   if (is_null()) return;
   if (original == nullptr && geometry.particles.item_count() != 0) refuse("original is NULL");
@@ -180,7 +180,7 @@ void Context::permutation(std::uint64_t id, std::uint64_t* original, std::uint64
 }
 
 void Context::restore_order(std::uint64_t id) {
-  GeometryObject& geometry = geometries_.get(id);
+  GeometryObject& geometry = particle_set(id);
   need_commit("insitu_particles_restore_order");
   if (is_null()) return;
   scene_dirty_ = true;
@@ -192,21 +192,40 @@ void Context::set_style(std::uint64_t id, const insitu_style& description) {
   GeometryObject& geometry = geometries_.get(id);
   const Style style = make_style(description);
   colormap_of(style);
-  if (geometry.particles.is_bound()) Colors::check(style, geometry.particles);
+  const Particles& particles = geometry.glyphs ? particle_set(geometry.glyphs->set()).particles : geometry.particles;
+  if (particles.is_bound()) Colors::check(style, particles);
   geometry.style = style;
+  geometry.style_is_default = false;
   scene_dirty_ = true;
 }
 
 void Context::bounds(std::uint64_t id, double lower[3], double upper[3]) {
   const GeometryObject& geometry = geometries_.get(id);
   need_commit("insitu_geometry_bounds");
-  geometry.particles.bounds(lower, upper);
+  for (int c = 0; c < 3; ++c) {
+    lower[c] = std::numeric_limits<double>::infinity();
+    upper[c] = -lower[c];
+  }
+  if (is_null() || !is_drawn(geometry) ||
+      !(geometry.glyphs ? geometry.glyphs->is_built() : geometry.particles.is_built()))
+    return;
+  each_shown(geometry, [&](const Geometry& shown, const glm::dvec3& shift) {
+    double low[3];
+    double high[3];
+    shown.bounds(low, high);
+    if (!(low[0] <= high[0])) return;
+    for (int c = 0; c < 3; ++c) {
+      lower[c] = std::min(lower[c], low[c] + shift[c]);
+      upper[c] = std::max(upper[c], high[c] + shift[c]);
+    }
+  });
 }
 
 void Context::destroy_geometry(std::uint64_t id) {
   geometries_.get(id);
   scene_.clear();
   scene_dirty_ = true;
+  destroy_glyphs_of(id);
   geometries_.remove(id);
 }
 
@@ -369,12 +388,24 @@ void Context::commit() {
   need_step("insitu_commit");
   // Whatever can be wrong is found before anything moves.
   geometries_.for_each([this](std::uint64_t, GeometryObject& geometry) {
-    if (!geometry.particles.is_bound()) return;
+    if (!is_drawn(geometry)) return;
+    if (geometry.glyphs) return check_glyphs(geometry);
     Colors::check(geometry.style, geometry.particles);
     colormap_of(geometry.style);
   });
   if (!is_null()) {
-    geometries_.for_each([this](std::uint64_t, GeometryObject& geometry) { build(geometry); });
+    scene_.clear();  // holds what is built anew
+    geometries_.for_each([this](std::uint64_t, GeometryObject& geometry) {
+      build(geometry);
+      if (!geometry.glyphs && geometry.changed && is_drawn(geometry)) build_cell(geometry);
+    });
+    geometries_.for_each([this](std::uint64_t, GeometryObject& geometry) {
+      if (!geometry.glyphs || !is_drawn(geometry)) return;
+      if (particle_set(geometry.glyphs->set()).changed || !geometry.glyphs->is_built()) build_glyphs(geometry);
+    });
+    geometries_.for_each([](std::uint64_t, GeometryObject& geometry) {
+      if (geometry.particles.is_built()) geometry.changed = false;
+    });
     scene_dirty_ = true;
     refresh_scene();
   }
@@ -410,14 +441,7 @@ void Context::refresh_scene() {
   const Stopwatch watch;
   scene_.clear();
   workers_.run([this] {
-    geometries_.for_each([this](std::uint64_t, GeometryObject& geometry) {
-      if (!geometry.particles.is_bound()) return;
-      if (!geometry.particles.is_built())
-        throw Error(INSITU_ERROR_WRONG_STATE,
-                    geometry.particles.name() + ": updated after insitu_commit; commit again");
-      const Colors colors(geometry.style, geometry.particles, colormap_of(geometry.style));
-      if (geometry.particles.drawn_count() != 0) scene_.add(geometry.particles, colors);
-    });
+    fill_scene();
     scene_.commit();
   });
   scene_dirty_ = false;
@@ -428,15 +452,19 @@ insitu_status Context::end_step() {
   if (!in_step_) throw Error(INSITU_ERROR_WRONG_STATE, "insitu_step_end without insitu_step_begin");
   if (check_level_ >= INSITU_CHECK_CHECKSUM && !is_null()) {
     geometries_.for_each([this](std::uint64_t, GeometryObject& geometry) {
-      if (!geometry.particles.is_bound()) return;
-      if (workers_.run([&] { return geometry.particles.checksum(); }) != geometry.checksum)
+      if (!geometry.particles.is_bound() && !(geometry.glyphs && geometry.glyphs->takes_part())) return;
+      if (workers_.run([&] { return checksum_of(geometry); }) != geometry.checksum)
         fail(INSITU_ERROR_WRONG_STATE,
              (geometry.particles.name() + ": values of its arrays changed between the update and insitu_step_end")
                  .c_str());
     });
   }
   scene_.clear();
-  geometries_.for_each([](std::uint64_t, GeometryObject& geometry) { geometry.particles.release(); });
+  geometries_.for_each([](std::uint64_t, GeometryObject& geometry) {
+    geometry.particles.release();
+    geometry.shown_cell.release();
+    if (geometry.glyphs) geometry.glyphs->release();
+  });
   in_step_ = false;
   committed_ = false;
   if (report_.status != INSITU_OK) keep_error_text(report_.error.c_str());

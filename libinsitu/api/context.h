@@ -5,6 +5,7 @@
 #include <array>
 #include <string>
 
+#include "api/glyphs.h"
 #include "api/handles.h"
 #include "core/budget.h"
 #include "core/workers.h"
@@ -17,11 +18,17 @@
 
 namespace insitu {
 
+// A set of particles; or bonds or vectors, which have `glyphs`, and of `particles` nothing but the name.
 struct GeometryObject {
   GeometryObject(std::string name, ParticleOrder order, bool keep_permutation)
       : particles(std::move(name), order, keep_permutation) {}
   Particles particles;
   Style style;
+  bool style_is_default = false;  // of vectors: follows the attribute
+  std::optional<CellDisplay> cell;
+  bool changed = true;   // arrays or cell, since the last commit
+  ShownCell shown_cell;  // as of the last commit of the step
+  std::unique_ptr<Glyphs> glyphs;
   std::uint64_t checksum = 0;  // of the bound arrays, with INSITU_CHECK_CHECKSUM
 };
 
@@ -63,6 +70,12 @@ class Context {
   void bounds(std::uint64_t id, double lower[3], double upper[3]);
   void destroy_geometry(std::uint64_t id);
 
+  void set_cell(std::uint64_t id, const insitu_cell* cell);
+  std::uint64_t create_bonds(const insitu_bonds_desc& desc);
+  void update_bonds(std::uint64_t id, const insitu_bonds_desc& desc);
+  std::uint64_t create_vectors(const insitu_vectors_desc& desc);
+  void update_vectors(std::uint64_t id, const insitu_vectors_desc& desc);
+
   std::uint64_t create_colormap(const insitu_colormap_desc& desc);
   void destroy_colormap(std::uint64_t id);
 
@@ -101,6 +114,21 @@ class Context {
   void check_values(const GeometryObject& geometry);
   void build(GeometryObject& geometry);
   void refresh_scene();
+  // context_glyphs.cpp
+  GeometryObject& particle_set(std::uint64_t id);
+  std::uint64_t create_glyphs(std::uint64_t set, const std::string& name,
+                              const std::function<void(GeometryObject&)>& make);
+  const Style& glyph_style(const GeometryObject& object);
+  bool is_drawn(const GeometryObject& object);
+  void check_glyphs(const GeometryObject& object);
+  void build_cell(GeometryObject& geometry);
+  void build_glyphs(GeometryObject& object);
+  void each_shown(const GeometryObject& object, const std::function<void(const Geometry&, const glm::dvec3&)>& action);
+  void fill_scene();
+  static std::uint64_t checksum_of(const GeometryObject& object) {
+    return object.glyphs ? object.glyphs->checksum() : object.particles.checksum();
+  }
+  void destroy_glyphs_of(std::uint64_t set);
   const Colormap& colormap_of(const Style& style);
   insitu_status write_report();
   void refresh_report();

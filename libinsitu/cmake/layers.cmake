@@ -24,6 +24,7 @@ set(layer_purpose_image "frame buffer and files")
 set(layer_purpose_geometry "what can be hit; views of foreign arrays")
 set(layer_purpose_geometry/particles "spheres from a simulation's arrays")
 set(layer_purpose_geometry/pkd "the tree over particle centres: build and order")
+set(layer_purpose_geometry/sticks "bonds, arrows and edges between points of particles")
 set(layer_purpose_core "memory budget, threads, clocks: leaf of the library")
 set(layer_purpose_kernels "SIMD loops over plain views, each with a scalar reference")
 

@@ -52,6 +52,8 @@ std::optional<UseRule> rule_of(std::uint32_t use) {
       return UseRule{"types", 1, 1, false, true};
     case INSITU_USE_ATTRIBUTE:
       return UseRule{"an attribute", 1, 4, true, true};
+    case INSITU_USE_PAIRS:
+      return UseRule{"pairs", 2, 2, false, true};
     case use_payload:
       return UseRule{"payload", 1, 4, true, true};
     default:
@@ -166,6 +168,8 @@ ArrayVerdict judge_array(const insitu_array& array, std::uint32_t use) {
       *type != Scalar::u32)
     return refuse(INSITU_ERROR_UNSUPPORTED,
                   std::string("positions are f32, f64, i32 or u32, not ") + scalar_name(array.type));
+  if (use == INSITU_USE_PAIRS && *type == Scalar::u8)
+    return refuse(INSITU_ERROR_UNSUPPORTED, "pairs are i32, i64, u32 or u64, not u8");
   return judge_layout(array, *type);
 }
 

@@ -17,12 +17,11 @@ void set_ray(SceneRay& ray, const glm::dvec3& origin, const glm::dvec3& directio
   }
 }
 
-// How far a point computed as origin + t direction, and the sphere test from there, may be off: some roundings of the
+// How far a point computed as origin + t direction, and the hit test from there, may be off: some roundings of the
 // largest number involved. Rays that leave the point start beyond it.
-double rounding_of(const glm::dvec3& point, const SceneRay& ray, double t, const double centre[3], double radius) {
-  double largest = std::max(t, radius);
-  for (int c = 0; c < 3; ++c)
-    largest = std::max({largest, std::abs(point[c]), std::abs(ray.ray.origin[c]), std::abs(centre[c])});
+double rounding_of(const glm::dvec3& point, const SceneRay& ray, double t, double magnitude) {
+  double largest = std::max(t, magnitude);
+  for (int c = 0; c < 3; ++c) largest = std::max({largest, std::abs(point[c]), std::abs(ray.ray.origin[c])});
   return 32.0 * 2.220446049250313e-16 * largest;
 }
 
@@ -137,15 +136,16 @@ void TileRenderer::locate(Sample& sample) const {
   const double t = sample.hit.t;
   const glm::dvec3 direction(ray.direction[0], ray.direction[1], ray.direction[2]);
   sample.point = glm::dvec3(ray.origin[0], ray.origin[1], ray.origin[2]) + t * direction;
-  double centre[3];
-  const Particles& particles = *scene_.entries()[sample.hit.geometry].particles;
-  particles.centre(sample.hit.item, centre);
-  const glm::dvec3 outward =
-      (sample.point - glm::dvec3(centre[0], centre[1], centre[2])) / particles.radius(sample.hit.item);
-  const double length = glm::length(outward);
-  sample.normal = length > 0.0 ? outward / length : -direction;
+  const Scene::Entry& entry = scene_.entries()[sample.hit.geometry];
+  const double local[3] = {sample.point.x - entry.shift.x, sample.point.y - entry.shift.y,
+                           sample.point.z - entry.shift.z};
+  const Surface surface = entry.geometry->surface(sample.hit.item, local);
+  sample.normal = glm::dvec3(surface.normal[0], surface.normal[1], surface.normal[2]);
+  if (sample.normal == glm::dvec3(0.0)) sample.normal = -direction;
   if (glm::dot(sample.normal, direction) > 0.0) sample.normal = -sample.normal;
-  sample.t_epsilon = rounding_of(sample.point, sample.ray, t, centre, particles.radius(sample.hit.item));
+  sample.t_epsilon = rounding_of(sample.point, sample.ray, t, surface.magnitude);
+  sample.item = surface.item;
+  sample.color_item = surface.color_item;
   sample.ambient_visible = 1.0;
   sample.light = glm::dvec3(0.0);
 }
@@ -237,7 +237,7 @@ void TileRenderer::shade() {
       pixels_[s.pixel].add(background);
       continue;
     }
-    const Rgba color = scene_.entries()[s.hit.geometry].colors.of(s.hit.item);
+    const Rgba color = scene_.entries()[s.hit.geometry].colors.of(s.color_item);
     const glm::dvec3 light = plan_.ambient * s.ambient_visible + s.light;
     pixels_[s.pixel].add(glm::dvec4(glm::dvec3(color.r, color.g, color.b) * light, 1.0));
   }
@@ -249,7 +249,7 @@ void TileRenderer::keep_channels() {
     if (s.index != 0 || !s.hit.found()) continue;
     const std::size_t at = std::size_t{s.y} * frame_.width + s.x;
     if (!frame_.depth.empty()) frame_.depth[at] = static_cast<float>(s.hit.t);
-    if (!frame_.item.empty()) frame_.item[at] = s.hit.item;
+    if (!frame_.item.empty()) frame_.item[at] = s.item;
     for (std::size_t c = 0; c < 3; ++c) {
       const auto axis = static_cast<glm::length_t>(c);
       if (!frame_.position.empty()) frame_.position[3 * at + c] = static_cast<float>(s.point[axis]);

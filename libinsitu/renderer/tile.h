@@ -26,9 +26,11 @@ class TileRenderer {
     SceneHit hit;
     glm::dvec3 point;
     glm::dvec3 normal;
-    double t_epsilon;        // secondary rays start beyond it
-    double ambient_visible;  // 0 to 1
-    glm::dvec3 light;        // direct light, cosine included
+    double t_epsilon;          // secondary rays start beyond it
+    std::uint64_t item;        // as the item channel shows it
+    std::uint64_t color_item;  // whose colour it has
+    double ambient_visible;    // 0 to 1
+    glm::dvec3 light;          // direct light, cosine included
   };
 
   // Brings every pixel to its number in wanted_.

@@ -143,6 +143,29 @@ StepSelection parse_steps(const std::string& text) {
   return steps;
 }
 
+std::array<std::uint32_t, 3> parse_replicate(const std::string& text) {
+  constexpr std::int64_t most = 1000;
+  const std::vector<std::string> parts = split_at(text, ',');
+  std::array<std::uint32_t, 3> counts = {};
+  bool good = parts.size() == 3;
+  for (std::size_t i = 0; good && i < 3; ++i) {
+    std::int64_t value = 0;
+    good = parse_whole(parts[i], value) && value >= 1 && value <= most;
+    counts[i] = static_cast<std::uint32_t>(value);
+  }
+  if (!good) throw UsageError("--replicate " + text + ": expected NX,NY,NZ, such as 2,2,1, each from 1 to 1000");
+  return counts;
+}
+
+double parse_bonds(const std::string& text) {
+  if (text == "auto") return 0.0;
+  double value = 0.0;
+  if (!parse_number(text, value) || !(value > 0.0 && std::isfinite(value))) {
+    throw UsageError("--bonds " + text + ": expected auto, or a length above 0: the longest bond");
+  }
+  return value;
+}
+
 std::vector<int> parse_elements(const std::string& text) {
   std::vector<int> elements;
   for (const std::string& part : split_at(text, ',')) {

@@ -20,6 +20,10 @@ void parse_view(const std::string& text, CameraOptions& camera);
 std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& text);
 // "A:B:K", where each part may be missing, or one number.
 StepSelection parse_steps(const std::string& text);
+// "2,2,1": how often the box is drawn along each of its edges.
+std::array<std::uint32_t, 3> parse_replicate(const std::string& text);
+// "auto", which is 0, or a length.
+double parse_bonds(const std::string& text);
 // "O,H,Na" as atomic numbers.
 std::vector<int> parse_elements(const std::string& text);
 

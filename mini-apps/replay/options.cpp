@@ -25,6 +25,8 @@ struct Texts {
   std::string size;
   std::string background;
   std::string order = "index";
+  std::string bonds;
+  std::string replicate;
   std::vector<double> range;
   bool no_hetatm = false;
 };
@@ -138,6 +140,39 @@ void add_looks(CLI::App& app, Options& options, Texts& texts) {
       ->group(group);
 }
 
+void add_glyphs(CLI::App& app, Options& options, Texts& texts) {
+  const char* const group = "Bonds, arrows and the box";
+  app.add_option("--bonds", texts.bonds,
+                 wrapped("Sticks between all particles nearer than a length, or auto: by the radii of the elements"))
+      ->type_name("R|auto")
+      ->group(group);
+  app.add_option("--ball-and-stick", options.ball_and_stick,
+                 wrapped("Balls by this factor smaller, such as 0.25, with bonds: auto, unless --bonds says otherwise"))
+      ->type_name("F")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+  app.add_option("--stick-radius", options.stick_radius,
+                 wrapped("Of bonds; by default a quarter of the largest ball's"))
+      ->type_name("R")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+  app.add_option("--vectors", options.vectors,
+                 wrapped("Arrows by an attribute with three components, such as velocity"))
+      ->type_name("NAME")
+      ->group(group);
+  app.add_option("--vector-scale", options.vector_scale,
+                 wrapped("Length of an arrow over that of its vector; by default the longest is twice the spacing"))
+      ->type_name("S")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+  app.add_flag("--cell", options.cell, wrapped("Draw the edges of the simulation's box"))->group(group);
+  app.add_option("--replicate", texts.replicate, wrapped("Draw the box so often along each of its edges"))
+      ->type_name("NX,NY,NZ")
+      ->group(group);
+  app.add_flag("--wrap", options.wrap, wrapped("Show what is outside of the box at its periodic image inside"))
+      ->group(group);
+}
+
 void add_camera(CLI::App& app, Options& options, Texts& texts) {
   const char* const group = "Camera";
   app.add_option("--camera", texts.camera,
@@ -222,6 +257,8 @@ void convert(const Texts& texts, Options& options) {
   if (!options.read.trajectories.empty() && options.files.size() != 1) {
     throw UsageError("--trajectory: expected one FILE, whose particles it moves");
   }
+  if (!texts.bonds.empty()) options.bonds = parse_bonds(texts.bonds);
+  if (!texts.replicate.empty()) options.replicate = parse_replicate(texts.replicate);
   options.order = order_names.at(texts.order);
   options.read.hetatm = !texts.no_hetatm;
   check_image_pattern(options.out);
@@ -236,6 +273,7 @@ std::optional<Options> parse_options(int argc, char** argv) {
       "  insitu-replay --ao 16 --shadows 4hhb.pdb.gz\n"
       "  insitu-replay --color speed --range 0 3 --view iso --out melt_{step:6}.png dump.lammpstrj\n"
       "  insitu-replay --trajectory run.dcd --ao 8 protein.pdb\n"
+      "  insitu-replay --ball-and-stick 0.25 --cell --replicate 3,3,1 quartz.cif\n"
       "  insitu-replay --color density snapshot_012.0.hdf5\n"
       "  insitu-replay --turntable 36 --out spin_{angle:3}.png protein.cif\n"
       "Exit codes: 0 done, 1 the library failed, 2 a file or the command line is wrong.");
@@ -245,6 +283,7 @@ std::optional<Options> parse_options(int argc, char** argv) {
   Texts texts;
   add_reading(app, options, texts);
   add_looks(app, options, texts);
+  add_glyphs(app, options, texts);
   add_camera(app, options, texts);
   add_output(app, options, texts);
   try {

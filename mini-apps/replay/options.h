@@ -52,7 +52,15 @@ struct Options {
   std::optional<std::array<double, 2>> range;
   std::string radius;
   double radius_scale = 1.0;
-  double treelet_share = 0.0;                       // of the bytes of the positions
+  double treelet_share = 0.0;            // of the bytes of the positions
+  std::optional<double> bonds;           // the longest one; 0: by the radii of the elements
+  std::optional<double> ball_and_stick;  // factor on the balls
+  double stick_radius = 0.0;             // 0: by that of the largest particle
+  std::string vectors;                   // the attribute
+  double vector_scale = 0.0;             // 0: by the spacing
+  bool cell = false;
+  bool wrap = false;
+  std::array<std::uint32_t, 3> replicate = {1, 1, 1};
   std::array<double, 4> background = {1, 1, 1, 1};  // linear
 
   CameraOptions camera;

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <iostream>
 
+#include "glyphs.h"
 #include "image_name.h"
 
 namespace replay {
@@ -96,6 +97,7 @@ void Player::play(Frame& frame) {
   check(insitu_step_begin(context, step, frame.time.value_or(static_cast<double>(step))));
   update(frame, arrays);
   set_style(color);
+  update_glyphs(frame);
   check(insitu_commit(context));
   if (fit_) fit();
   const int turns = options_.camera.turntable;
@@ -117,7 +119,7 @@ void Player::update(Frame& frame, Arrays& arrays) {
   arrays.position_array = records(INSITU_F64, 3, frame.position.data());
   desc.position = &arrays.position_array;
   desc.radius_default = arrays.radius.for_all;
-  desc.radius_scale = options_.radius_scale;
+  desc.radius_scale = ball_scale(options_);
   desc.treelet_share = options_.treelet_share;
   if (!arrays.radius.per_particle.empty()) {
     arrays.radius_array = records(INSITU_F32, 1, arrays.radius.per_particle.data());
@@ -160,6 +162,26 @@ void Player::set_style(const ColorChoice& color) {
   constexpr double nearly_black = 1e-6;
   for (std::size_t i = 0; i < 3; ++i) style.color[i] = std::max(color.color[i], nearly_black);
   check(insitu_geometry_set_style(context_.get(), particles_, &style));
+}
+
+void Player::update_glyphs(const Frame& frame) {
+  insitu_context const context = context_.get();
+  const CellChoice cell = choose_cell(frame, options_);
+  check(insitu_particles_set_cell(context, particles_, cell.known ? &cell.cell : nullptr));
+  BondChoice bonds = choose_bonds(frame, options_);
+  if (bonds.wanted) {
+    bonds.bonds.particles = particles_;
+    check(bonds_.id == 0 ? insitu_bonds_create(context, &bonds.bonds, &bonds_)
+                         : insitu_bonds_update(context, bonds_, &bonds.bonds));
+  }
+  check_vectors(frame, options_);
+  if (options_.vectors.empty() || vectors_.id != 0) return;
+  insitu_vectors_desc vectors;
+  insitu_vectors_desc_init(&vectors);
+  vectors.particles = particles_;
+  vectors.attribute = options_.vectors.c_str();
+  vectors.scale = options_.vector_scale;
+  check(insitu_vectors_create(context, &vectors, &vectors_));
 }
 
 // Once per file: in a trajectory the camera stands still.

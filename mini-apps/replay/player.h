@@ -51,6 +51,7 @@ class Player {
   std::uint64_t number_of(const Frame& frame);
   void update(Frame& frame, Arrays& arrays);
   void set_style(const ColorChoice& color);
+  void update_glyphs(const Frame& frame);
   void fit();
   void draw(std::uint64_t step, double angle_deg);
   void print_line(const std::string& name);
@@ -62,6 +63,8 @@ class Player {
   const Options& options_;
   std::unique_ptr<std::remove_pointer_t<insitu_context>, Destroy> context_;
   insitu_geometry particles_ = {};
+  insitu_geometry bonds_ = {};    // made with the first step that has some
+  insitu_geometry vectors_ = {};  // likewise
   insitu_view view_ = {};
   insitu_image image_ = {};
   std::optional<std::uint64_t> last_step_;

@@ -167,6 +167,37 @@ static void check_structs(void) {
   OFFSET(insitu_stats, items_moved, 152);
   OFFSET(insitu_stats, treelets, 160);
   OFFSET(insitu_stats, treelet_bytes, 168);
+
+  SIZE(insitu_cell, 152);
+  OFFSET(insitu_cell, struct_size, 0);
+  OFFSET(insitu_cell, flags, 4);
+  OFFSET(insitu_cell, origin, 8);
+  OFFSET(insitu_cell, vectors, 32);
+  OFFSET(insitu_cell, replicate, 104);
+  OFFSET(insitu_cell, reserved, 116);
+  OFFSET(insitu_cell, outline_radius, 120);
+  OFFSET(insitu_cell, outline_color, 128);
+
+  SIZE(insitu_bonds_desc, 56);
+  OFFSET(insitu_bonds_desc, struct_size, 0);
+  OFFSET(insitu_bonds_desc, flags, 4);
+  OFFSET(insitu_bonds_desc, name, 8);
+  OFFSET(insitu_bonds_desc, particles, 16);
+  OFFSET(insitu_bonds_desc, pairs, 24);
+  OFFSET(insitu_bonds_desc, cutoff, 32);
+  OFFSET(insitu_bonds_desc, cutoff_by_radius, 40);
+  OFFSET(insitu_bonds_desc, radius, 48);
+
+  SIZE(insitu_vectors_desc, 64);
+  OFFSET(insitu_vectors_desc, struct_size, 0);
+  OFFSET(insitu_vectors_desc, flags, 4);
+  OFFSET(insitu_vectors_desc, name, 8);
+  OFFSET(insitu_vectors_desc, particles, 16);
+  OFFSET(insitu_vectors_desc, attribute, 24);
+  OFFSET(insitu_vectors_desc, scale, 32);
+  OFFSET(insitu_vectors_desc, radius, 40);
+  OFFSET(insitu_vectors_desc, head_radius, 48);
+  OFFSET(insitu_vectors_desc, head_length, 56);
 }
 
 static void check_constants(void) {
@@ -211,6 +242,20 @@ static void check_constants(void) {
   VALUE(INSITU_USE_RADIUS, 2);
   VALUE(INSITU_USE_TYPE, 3);
   VALUE(INSITU_USE_ATTRIBUTE, 4);
+  VALUE(INSITU_USE_PAIRS, 5);
+
+  VALUE(INSITU_CELL_PERIODIC_A, 1);
+  VALUE(INSITU_CELL_PERIODIC_B, 2);
+  VALUE(INSITU_CELL_PERIODIC_C, 4);
+  VALUE(INSITU_CELL_PERIODIC, 7);
+  VALUE(INSITU_CELL_WRAP, 8);
+  VALUE(INSITU_CELL_OUTLINE, 16);
+
+  VALUE(INSITU_BONDS_FLAT_ENDS, 1);
+  VALUE(INSITU_BONDS_OWN_STYLE, 2);
+  VALUE(INSITU_BONDS_PERIODIC, 4);
+
+  VALUE(INSITU_VECTORS_CENTRED, 1);
 
   VALUE(INSITU_ORDER_INDEX, 0);
   VALUE(INSITU_ORDER_PERMUTE, 1);

@@ -36,12 +36,14 @@ class SetArrays {
     position = vectors(set.x);
     radius = scalars(set.radius);
     value = scalars(set.value);
+    vector = set.vector.empty() ? insitu_array{} : vectors(set.vector);
     type = plain(INSITU_I32, set.type.data(), count_ * sizeof(std::int32_t));
   }
 
   insitu_array position;
   insitu_array radius;
   insitu_array value;
+  insitu_array vector;  // struct_size 0: there is none
   insitu_array type;
 
  private:
@@ -98,16 +100,16 @@ class SetArrays {
   std::vector<std::unique_ptr<double[]>> memory_;
 };
 
-void add_set(const Context& context, const Set& set, const SetArrays& arrays, const Variant& variant) {
+insitu_geometry add_set(const Context& context, const Set& set, const SetArrays& arrays, const Variant& variant) {
   insitu_particles_desc desc;
   insitu_particles_desc_init(&desc);
   desc.order = variant.order;
   desc.position = &arrays.position;
   desc.radius = &arrays.radius;
   desc.type = &arrays.type;
-  const insitu_attribute value = {"value", &arrays.value};
-  desc.attributes = &value;
-  desc.attribute_count = 1;
+  const insitu_attribute attributes[] = {{"value", &arrays.value}, {"vector", &arrays.vector}};
+  desc.attributes = attributes;
+  desc.attribute_count = arrays.vector.struct_size != 0 ? 2 : 1;
   insitu_geometry geometry;
   context.expect_ok(insitu_particles_create(context.get(), &desc, &geometry));
 
@@ -128,6 +130,30 @@ void add_set(const Context& context, const Set& set, const SetArrays& arrays, co
   }
   for (int c = 0; c < 3; ++c) style.color[c] = set.color[c];
   context.expect_ok(insitu_geometry_set_style(context.get(), geometry, &style));
+  return geometry;
+}
+
+void add_glyphs(const Context& context, const Glyphs& glyphs, insitu_geometry set) {
+  insitu_geometry geometry;
+  if (glyphs.cell.struct_size != 0) context.expect_ok(insitu_particles_set_cell(context.get(), set, &glyphs.cell));
+  if (glyphs.bonds > 0.0) {
+    insitu_bonds_desc bonds;
+    insitu_bonds_desc_init(&bonds);
+    bonds.flags = INSITU_BONDS_PERIODIC;
+    bonds.particles = set;
+    bonds.cutoff = glyphs.bonds;
+    bonds.radius = glyphs.bond_radius;
+    context.expect_ok(insitu_bonds_create(context.get(), &bonds, &geometry));
+  }
+  if (glyphs.arrows > 0.0) {
+    insitu_vectors_desc vectors;
+    insitu_vectors_desc_init(&vectors);
+    vectors.particles = set;
+    vectors.attribute = "vector";
+    vectors.scale = glyphs.arrows;
+    vectors.radius = glyphs.arrow_radius;
+    context.expect_ok(insitu_vectors_create(context.get(), &vectors, &geometry));
+  }
 }
 
 }  // namespace
@@ -162,7 +188,7 @@ std::vector<float> draw(const Scene& scene, const Variant& variant, const std::s
   std::vector<std::unique_ptr<SetArrays>> arrays;
   for (const Set& set : scene.sets) {
     arrays.push_back(std::make_unique<SetArrays>(set, variant));
-    add_set(context, set, *arrays.back(), variant);
+    add_glyphs(context, scene.glyphs, add_set(context, set, *arrays.back(), variant));
   }
   context.expect_ok(insitu_commit(context.get()));
   context.expect_ok(insitu_render(context.get(), view, image));

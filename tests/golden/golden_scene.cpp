@@ -181,6 +181,67 @@ Scene two_sets() {
   return scene;
 }
 
+insitu_cell make_cell(std::uint32_t flags, double a, double b, double c) {
+  insitu_cell cell;
+  insitu_cell_init(&cell);
+  cell.flags = flags;
+  cell.vectors[0][0] = a;
+  cell.vectors[1][1] = b;
+  cell.vectors[2][2] = c;
+  return cell;
+}
+
+// Rings as balls and sticks, each half of a bond in the colour of its end, with shadows.
+Scene ball_and_stick() {
+  Scene scene = molecules();
+  scene.name = "ball_and_stick";
+  for (double& r : scene.sets[0].radius) r *= 0.3125;
+  scene.glyphs.bonds = 1.5;
+  scene.glyphs.bond_radius = 0.15625;
+  scene.effects.flags = INSITU_EFFECT_SHADOWS;
+  return scene;
+}
+
+// A whirl of arrows: small ones in the middle, which are all head.
+Scene arrows() {
+  Scene scene = make_scene("arrows", {0.0, 0.0, 0.0}, {0.25, 0.75, 1.0}, 11.0);
+  Set set;
+  for (int i = 0; i < 49; ++i) {
+    const double x = i % 7 - 3;
+    const double z = i / 7 - 3;
+    set.add(x, 0.0, z, 0.0625, i, 0);
+    set.vector.insert(set.vector.end(), {-z, 0.5 * x, x});
+  }
+  scene.sets.push_back(set);
+  scene.glyphs.arrows = 0.25;
+  scene.glyphs.arrow_radius = 0.046875;
+  return scene;
+}
+
+// Six copies of a tilted cell, outlined; particles that have left it on one side come in on the other.
+Scene replicas() {
+  Scene scene = make_scene("replicas", {4.0, 2.0, 1.0}, {0.5, 0.625, 1.0}, 17.0);
+  Set set;
+  for (int i = 0; i < 24; ++i) {
+    const int corner = i % 8;
+    set.add(1.0 * (corner % 2) + 0.75 * (i / 8), 1.0 * (corner / 2 % 2) - 0.25 * (i / 8), 1.0 * (corner / 4) + 0.5,
+            0.1875, 0.0, i / 8);
+  }
+  set.color_by = "type";
+  set.own_colors = four_colors();
+  scene.sets.push_back(set);
+  scene.glyphs.cell = make_cell(INSITU_CELL_PERIODIC | INSITU_CELL_WRAP | INSITU_CELL_OUTLINE, 2.5, 2.25, 2.0);
+  scene.glyphs.cell.vectors[1][0] = 0.5;
+  scene.glyphs.cell.replicate[0] = 3;
+  scene.glyphs.cell.replicate[1] = 2;
+  scene.glyphs.cell.outline_radius = 0.03125;
+  scene.glyphs.bonds = 0.9375;
+  scene.glyphs.bond_radius = 0.078125;
+  scene.effects.flags = INSITU_EFFECT_AMBIENT_OCCLUSION;
+  scene.effects.ao_radius = 1.0;
+  return scene;
+}
+
 Scene transparent_background() {
   Scene scene = grid("transparent_background", "categorical");
   scene.sets[0].color_by = "type";
@@ -202,6 +263,9 @@ std::vector<Scene> all_scenes() {
           orthographic(),
           dust(),
           two_sets(),
+          ball_and_stick(),
+          arrows(),
+          replicas(),
           transparent_background()};
 }
 

@@ -18,6 +18,7 @@ struct Set {
   std::vector<double> radius;
   std::vector<double> value;
   std::vector<std::int32_t> type;
+  std::vector<double> vector;      // of the arrows
   const char* color_by = nullptr;  // "value", "type" or NULL: uniform
   const char* colormap = "viridis";
   std::vector<double> own_colors;  // categorical, sRGB and opacity: instead of `colormap`
@@ -32,8 +33,18 @@ struct Set {
   std::uint64_t count() const { return radius.size(); }
 };
 
+// What stands on the sets of a scene.
+struct Glyphs {
+  double bonds = 0.0;  // longest one; 0: none
+  double bond_radius = 0.0;
+  double arrows = 0.0;  // length over that of the vector; 0: none
+  double arrow_radius = 0.0;
+  insitu_cell cell = {};  // struct_size 0: none
+};
+
 struct Scene {
   std::string name;
+  Glyphs glyphs;
   std::vector<Set> sets;
   insitu_camera camera;
   std::vector<insitu_light> lights;  // empty: the default ones

@@ -50,6 +50,16 @@ TEST(Options, WrongCamerasAreRefused) {
   EXPECT_THAT(error(""), HasSubstr("expected fit or eye="));
 }
 
+TEST(Options, BondsAndReplicas) {
+  EXPECT_EQ(parse_bonds("auto"), 0.0);
+  EXPECT_EQ(parse_bonds("1.6"), 1.6);
+  for (const char* text : {"", "0", "-1", "nan", "inf", "long"})
+    EXPECT_THAT(usage_error([text] { parse_bonds(text); }), HasSubstr("the longest bond")) << text;
+  EXPECT_THAT(parse_replicate("3,2,1"), ElementsAre(3, 2, 1));
+  for (const char* text : {"", "2", "2,2", "2,2,2,2", "0,1,1", "1,-1,1", "1,1,1.5", "1001,1,1"})
+    EXPECT_THAT(usage_error([text] { parse_replicate(text); }), HasSubstr("expected NX,NY,NZ")) << text;
+}
+
 TEST(Options, ViewsAreNamesOrDirections) {
   CameraOptions camera;
   parse_view("-x", camera);

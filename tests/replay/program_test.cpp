@@ -243,12 +243,39 @@ TEST_F(Program, WrongOptionsExitWithTwo) {
       {"water.xyz --steps 5", "selects none of the 1 steps"},
       {"steps.dump --out one.png", "expected {step} in the name"},
       {"steps.dump --radius vdw", "the file names no elements"},
+      {"water.xyz --cell", "need the box"},
+      {"water.xyz --wrap", "need the box"},
+      {"water.xyz --vectors q", "three components, of which there are none"},
+      {"steps.dump --bonds auto", "needs radii of elements"},
+      {"water.xyz --bonds -1", "the longest bond"},
+      {"steps.dump --replicate 2,2", "expected NX,NY,NZ"},
   };
   for (const auto& c : cases) {
     const Outcome result = run(c.arguments);
     EXPECT_EQ(result.exit_code, 2) << c.arguments;
     EXPECT_THAT(result.err, AllOf(StartsWith("insitu-replay: "), HasSubstr(c.message))) << c.arguments;
   }
+}
+
+// What is drawn beside the particles takes memory, which the report tells.
+TEST_F(Program, BondsArrowsAndTheBoxAreDrawn) {
+  folder_.write("moving.xyz",
+                "2\nLattice=\"4 0 0 0 4 0 0 0 4\" Properties=species:S:1:pos:R:3:velo:R:3\n"
+                "O 0 0 0 1 0 0\nH 0.9 0 0 0 0 2\n");
+  const auto owned = [&](const std::string& arguments) {
+    const Outcome result = run("moving.xyz --quiet --out a.png --report report.jsonl " + arguments);
+    EXPECT_EQ(result.exit_code, 0) << arguments << ": " << result.err;
+    EXPECT_THAT(result.err, IsEmpty()) << arguments;
+    const std::string line = read_file(folder_.path("report.jsonl"));
+    const std::size_t at = line.find("\"owned\":");
+    std::filesystem::remove(folder_.path("report.jsonl"));
+    return at == std::string::npos ? 0 : std::stol(line.substr(at + 8));
+  };
+  const long plain = owned("");
+  EXPECT_GT(plain, 0);
+  for (const char* arguments : {"--bonds auto", "--bonds 1.5", "--ball-and-stick 0.25", "--vectors velocity", "--cell"})
+    EXPECT_GT(owned(arguments), plain) << arguments;
+  EXPECT_GT(owned("--ball-and-stick 0.3 --cell --replicate 2,2,2 --wrap --vectors velocity --vector-scale 0.5"), plain);
 }
 
 TEST_F(Program, ErrorsOfTheLibraryExitWithOne) {

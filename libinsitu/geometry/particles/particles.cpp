@@ -427,6 +427,22 @@ void Particles::centre(std::uint64_t item, double out[3]) const {
     out[c] = arrays_->position_origin[c] + position.value(item, c) * arrays_->position_scale;
 }
 
+Surface Particles::surface(std::uint64_t item, const double point[3]) const {
+  double at[3];
+  centre(item, at);
+  const double r = radius(item);
+  Surface surface{{}, r, item, item};
+  double squares = 0.0;
+  for (int c = 0; c < 3; ++c) {
+    surface.normal[c] = (point[c] - at[c]) / r;
+    squares += surface.normal[c] * surface.normal[c];
+    surface.magnitude = std::max(surface.magnitude, std::abs(at[c]));
+  }
+  const double length = std::sqrt(squares);
+  for (double& n : surface.normal) n = length > 0.0 ? n / length : 0.0;
+  return surface;
+}
+
 double Particles::radius(std::uint64_t item) const { return tree_.radius.value(item) * arrays_->position_scale; }
 
 const ArrayView* Particles::attribute(const std::string& name) const {

@@ -8,6 +8,7 @@
 #include "core/budget.h"
 #include "core/workers.h"
 #include "geometry/array_view.h"
+#include "geometry/geometry.h"
 #include "geometry/pkd/pkd_build.h"
 #include "kernels/pkd_tree.h"
 #include "kernels/ray.h"
@@ -43,7 +44,7 @@ struct ValueRange {
 
 enum class ParticleOrder : std::uint32_t { index = 0, permute = 1, copy = 2 };  // as INSITU_ORDER_*
 
-class Particles {
+class Particles : public Geometry {
  public:
   Particles(std::string name, ParticleOrder order, bool keep_permutation);
   Particles(const Particles&) = delete;
@@ -72,11 +73,12 @@ class Particles {
   std::uint64_t index_bytes() const { return index32_.bytes() + index64_.bytes(); }
 
   // World space, radii included; lower > upper when nothing is drawn.
-  void bounds(double lower[3], double upper[3]) const;
+  void bounds(double lower[3], double upper[3]) const override;
 
   // Rays and hits in world space.
-  void first_hits(const kernels::Ray* rays, kernels::Hit* hits, std::size_t count) const;
-  void any_hits(const kernels::Ray* rays, std::uint8_t* occluded, std::size_t count) const;
+  void first_hits(const kernels::Ray* rays, kernels::Hit* hits, std::size_t count) const override;
+  void any_hits(const kernels::Ray* rays, std::uint8_t* occluded, std::size_t count) const override;
+  Surface surface(std::uint64_t item, const double point[3]) const override;
   std::vector<kernels::Span> all_hits(const kernels::Ray& ray) const;
   void centre(std::uint64_t item, double out[3]) const;
   double radius(std::uint64_t item) const;
@@ -94,6 +96,9 @@ class Particles {
   // Sums over all records, alike for any order of them: changes when a bit of the borrowed arrays changes.
   std::uint64_t checksum() const;
 
+  // As bound; the tree stands in their space, world = origin + scale * value.
+  const ParticleArrays& arrays() const { return *arrays_; }
+  double position_scale() const { return arrays_->position_scale; }
   const kernels::PkdTree& tree() const { return tree_; }
   const kernels::Treelets& treelets() const { return treelets_; }
 

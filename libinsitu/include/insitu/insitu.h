@@ -139,7 +139,13 @@ typedef struct insitu_array {
   uint64_t tail_bytes;
 } insitu_array;
 
-enum { INSITU_USE_POSITION = 1, INSITU_USE_RADIUS = 2, INSITU_USE_TYPE = 3, INSITU_USE_ATTRIBUTE = 4 };
+enum {
+  INSITU_USE_POSITION = 1,
+  INSITU_USE_RADIUS = 2,
+  INSITU_USE_TYPE = 3,
+  INSITU_USE_ATTRIBUTE = 4,
+  INSITU_USE_PAIRS = 5
+};
 
 typedef struct insitu_array_report {
   uint32_t struct_size;
@@ -271,6 +277,95 @@ typedef struct insitu_colormap_desc {
 INSITU_API insitu_status insitu_colormap_create(insitu_context context, const insitu_colormap_desc* desc,
                                                 insitu_colormap* out);
 INSITU_API insitu_status insitu_colormap_destroy(insitu_context context, insitu_colormap colormap);
+
+/* ----------------------------------------------------------------------------------------- cells, bonds, vectors -- */
+
+enum {
+  INSITU_CELL_PERIODIC_A = 1u, /* the simulation repeats along vectors[0] */
+  INSITU_CELL_PERIODIC_B = 2u, /* ... vectors[1] */
+  INSITU_CELL_PERIODIC_C = 4u, /* ... vectors[2] */
+  INSITU_CELL_PERIODIC = 7u,   /* along all three */
+  INSITU_CELL_WRAP = 8u,       /* particles outside are shown at their periodic image inside; no value changes */
+  INSITU_CELL_OUTLINE = 16u    /* its edges are drawn, as thin sticks */
+};
+
+/* The cell of a set of particles. Copies of the set are drawn as instances: they take a few hundred bytes each. */
+typedef struct insitu_cell {
+  uint32_t struct_size;
+  uint32_t flags; /* INSITU_CELL_* */
+  double origin[3];
+  double vectors[3][3];    /* the three edges; any angles, but not in one plane */
+  uint32_t replicate[3];   /* how often it is drawn along each vector, itself included; 0 = 1 */
+  uint32_t reserved;       /* 0 */
+  double outline_radius;   /* 0 = 1/400 of the longest edge */
+  double outline_color[3]; /* linear RGB; all 0 = dark grey */
+} insitu_cell;
+
+/* Gives a set of particles a cell, or with NULL none; kept until changed, in force from the next insitu_commit. Bonds
+ * and vectors of the set are drawn as often as its particles are. The item channel shows the particles' own items in
+ * every copy, and all ones for the outline. Copies by INSITU_CELL_WRAP and `replicate` together are at most 2^20.
+ * Errors: invalid_argument, invalid_handle; at insitu_commit unsupported, when particles that are to be wrapped lie in
+ * more than 4096 images of the cell. */
+INSITU_API insitu_status insitu_particles_set_cell(insitu_context context, insitu_geometry particles,
+                                                   const insitu_cell* cell);
+
+enum {
+  INSITU_BONDS_FLAT_ENDS = 1u, /* bare cylinders; by default half balls close the ends */
+  INSITU_BONDS_OWN_STYLE = 2u, /* coloured by the bonds' own style; by default each half as the particle at its end */
+  INSITU_BONDS_PERIODIC = 4u   /* across borders of the set's cell, each as a half bond on either side: pairs between
+                                  their nearest images (exact below half the smallest height of the cell), bonds by
+                                  distance to every image that is near enough */
+};
+
+/* Sticks between particles of one set, by a list of pairs, or between all pairs nearer than some distance. */
+typedef struct insitu_bonds_desc {
+  uint32_t struct_size;
+  uint32_t flags;            /* INSITU_BONDS_* */
+  const char* name;          /* for messages and the report; NULL = "bonds"; fixed at creation */
+  insitu_geometry particles; /* the set; fixed at creation */
+  const insitu_array* pairs; /* 2 x i32 | i64 | u32 | u64: items of the set, counted from 0; or NULL. Read in place */
+  double cutoff;             /* without `pairs`: all pairs nearer than this */
+  double cutoff_by_radius; /* without `pairs` and `cutoff`: nearer than this times the sum of the two radii as drawn */
+  double radius;           /* 0 = a quarter of the set's largest radius */
+} insitu_bonds_desc;
+
+/* Declares the bonds of a set; a descriptor with `pairs` inside a step also updates them. Bonds by distance are drawn
+ * in every step in which their set is; those by `pairs` borrow the array and need an update in each step. Pairs with an
+ * index out of range, twice the same item or place, or a position that is not finite are not drawn; they are counted
+ * and warned of. Pairs cannot name particles of a set with INSITU_ORDER_PERMUTE, whose items change places. The item
+ * channel shows the number of the pair, for bonds by distance the particle at the nearer end.
+ * insitu_geometry_set_style, insitu_geometry_bounds and insitu_geometry_destroy work as for particles; the attributes
+ * are those of the set, at the nearer end. Bonds are destroyed with their set. Errors: invalid_argument,
+ * invalid_handle, wrong_state (pairs outside of a step), unsupported; at insitu_commit invalid_argument, when bonds by
+ * distance across borders may be longer than half the cell. */
+INSITU_API insitu_status insitu_bonds_create(insitu_context context, const insitu_bonds_desc* desc,
+                                             insitu_geometry* out);
+INSITU_API insitu_status insitu_bonds_update(insitu_context context, insitu_geometry bonds,
+                                             const insitu_bonds_desc* desc);
+
+enum { INSITU_VECTORS_CENTRED = 1u /* the particle is in the middle of its arrow; by default at the tail */ };
+
+/* Arrows at the particles of a set. */
+typedef struct insitu_vectors_desc {
+  uint32_t struct_size;
+  uint32_t flags;            /* INSITU_VECTORS_* */
+  const char* name;          /* for messages and the report; NULL = "vectors"; fixed at creation */
+  insitu_geometry particles; /* the set; fixed at creation */
+  const char* attribute;     /* an attribute of the set with three components */
+  double scale;              /* length of an arrow over that of its vector; 0 = the longest is twice the mean spacing */
+  double radius;             /* of the shaft; 0 = a tenth of half the mean spacing */
+  double head_radius;        /* 0 = 2.5 times `radius` */
+  double head_length;        /* 0 = 2.5 times `head_radius`; shorter arrows are all head, smaller in proportion */
+} insitu_vectors_desc;
+
+/* Declares arrows; they are drawn in every step in which their set is, without an update. Coloured by their length,
+ * until insitu_geometry_set_style says otherwise. Vectors that are not finite are not drawn, but counted and warned of.
+ * The item channel shows the particle. Vectors are destroyed with their set. Errors: invalid_argument, invalid_handle;
+ * at insitu_commit invalid_argument for an attribute that is not there. */
+INSITU_API insitu_status insitu_vectors_create(insitu_context context, const insitu_vectors_desc* desc,
+                                               insitu_geometry* out);
+INSITU_API insitu_status insitu_vectors_update(insitu_context context, insitu_geometry vectors,
+                                               const insitu_vectors_desc* desc);
 
 /* ---------------------------------------------------------------------------------------------------------- view -- */
 
@@ -439,6 +534,9 @@ INSITU_DEFINE_INIT(insitu_effects)
 INSITU_DEFINE_INIT(insitu_view_desc)
 INSITU_DEFINE_INIT(insitu_image_desc)
 INSITU_DEFINE_INIT(insitu_stats)
+INSITU_DEFINE_INIT(insitu_cell)
+INSITU_DEFINE_INIT(insitu_bonds_desc)
+INSITU_DEFINE_INIT(insitu_vectors_desc)
 #undef INSITU_DEFINE_INIT
 
 static inline void insitu_context_desc_init(insitu_context_desc* object) {

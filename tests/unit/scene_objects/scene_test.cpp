@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "kernels/pkd_reference.h"
+#include "kernels/sphere.h"
 #include "unit/geometry/arrays.h"
 #include "unit/kernels/test_tree.h"
 
@@ -127,6 +128,68 @@ TEST(Scene, SetsApartOverlappingAndNested) {
       EXPECT_GT(hits, 250u);
       EXPECT_LT(hits, 700u);
       sets.expect_brute_force(rays_at(sets, 300, 0.1, count + 50), "inside");
+    }
+  }
+}
+
+// More sets than are traced in turn: through Embree, with the same hits.
+TEST(Scene, ManySets) {
+  for (const std::size_t count : {Scene::most_in_turn, Scene::most_in_turn + 1}) {
+    std::vector<Set> sets;
+    for (std::size_t i = 0; i < count; ++i) {
+      CounterRandom random(i + 300);
+      const double apart = 0.7 * static_cast<double>(i % 5);
+      sets.emplace_back(moved(make_cloud(Shape::uniform, 20 + i % 7, 1.0, random), apart), 0.05, ParticleOrder::index);
+    }
+    const SceneOfSets scene(std::move(sets));
+    EXPECT_GT(scene.expect_brute_force(rays_at(scene, 1500, 3.0, 13), "many"), 500u) << count;
+  }
+}
+
+// The same set drawn in many places, near and very far apart: as brute force over copies of it says, within what the
+// shift of the rays rounds.
+TEST(Scene, InstancesAreHitWhereTheyAreShifted) {
+  for (const double apart : {0.5, 3.0, 1e6}) {
+    for (const int edge : {2, 5}) {
+      CounterRandom random(14);
+      const Set set(make_cloud(Shape::uniform, 150, 1.0, random), 0.05, ParticleOrder::index);
+      Scene scene;
+      for (int i = 0; i < edge * edge * edge; ++i)
+        scene.add(*set.particles, Colors(Style{}, *set.particles, *builtin_colormap("viridis")),
+                  apart * glm::dvec3(i % edge, i / edge % edge, i / (edge * edge)));
+      scene.commit();
+      std::vector<SceneRay> rays(400);
+      for (SceneRay& ray : rays) {
+        random.direction(ray.ray.direction);
+        const Scene::Entry& aim = scene.entries()[random.below(scene.entries().size())];
+        double centre[3];
+        set.particles->centre(random.below(150), centre);
+        for (int c = 0; c < 3; ++c)
+          ray.ray.origin[c] = centre[c] + aim.shift[c] + random.between(-0.06, 0.06) - 4.0 * ray.ray.direction[c];
+      }
+      std::vector<SceneHit> hits(rays.size());
+      std::vector<std::uint8_t> occluded(rays.size());
+      scene.first_hits(rays.data(), hits.data(), rays.size());
+      scene.any_hits(rays.data(), occluded.data(), rays.size());
+      std::size_t found = 0;
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const Scene::Entry& entry : scene.entries()) {
+          for (std::uint64_t item = 0; item < 150; ++item) {
+            double centre[3];
+            set.particles->centre(item, centre);
+            for (int c = 0; c < 3; ++c) centre[c] += entry.shift[c];
+            nearest = std::min(nearest, kernels::sphere_first_hit(rays[i].ray.origin, rays[i].ray.direction, centre,
+                                                                  set.particles->radius(item), 0.0));
+          }
+        }
+        ASSERT_EQ(hits[i].found(), std::isfinite(nearest)) << apart << " ray " << i;
+        EXPECT_EQ(occluded[i], hits[i].found() ? 1 : 0);
+        if (!hits[i].found()) continue;
+        ++found;
+        EXPECT_NEAR(hits[i].t, nearest, 1e-7) << apart << " ray " << i;  // at 1e6, a grazing hit, is the worst
+      }
+      EXPECT_GT(found, 150u);
     }
   }
 }
