@@ -69,8 +69,8 @@ class TreeletNodes {
       }
     }
   }
-  // Children that hold particles: those without have boxes that nothing meets.
-  std::uint32_t Filled(const Node&) const { return 0xff; }
+  // Children that are there. A box without particles is met by no ray, but perhaps by a wide beam.
+  std::uint32_t Filled(const Node& node) const { return (1u << (1u << node.bits)) - 1; }
   std::uint32_t Flip(const Node& node) const { return node.flip; }
   HWY_INLINE Place Child(const Node& node, unsigned k) const {
     return {child_run(node.place.run, node.bits, k), (node.place.node << node.bits) + k};
