@@ -158,7 +158,7 @@ std::map<std::string, double> measure_displaced_rebuild(const BuildOptions& opti
 std::map<std::string, double> measure_melt_rebuild(const BuildOptions& options, insitu::Workers& workers,
                                                    nlohmann::ordered_json& rows) {
   melt::SimulationDesc desc;  // as the mini-app has it by default, but for the size
-  desc.atoms = 500000;
+  desc.atoms = options.quick ? 108000 : 500000;
   desc.threads = 2;
   constexpr int every = 50;  // steps from picture to picture, as melt draws them by default
   melt::Simulation simulation(desc);
