@@ -1,11 +1,10 @@
 #include "embree_spheres.h"
 
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/parallel_for.h>
-
 #include <atomic>
 #include <cmath>
 #include <stdexcept>
+
+#include "ray_tiles.h"
 
 namespace bench {
 namespace {
@@ -96,13 +95,6 @@ void occlude_spheres(const RTCOccludedFunctionNArguments* a) {
       sphere_against<true>(s, a->N, a->valid, a->ray, nullptr, a->geomID, a->primID);
     }
   }
-}
-
-template <class Body>
-void for_tiles(std::size_t count, std::size_t per_tile, const Body& body) {
-  const std::size_t tiles = (count + per_tile - 1) / per_tile;
-  tbb::parallel_for(std::size_t{0}, tiles,
-                    [&](std::size_t tile) { body(tile * per_tile, std::min(count, (tile + 1) * per_tile)); });
 }
 
 // Secondary rays start this far from the sphere they leave, in single precision the usual remedy.
@@ -242,7 +234,8 @@ void EmbreeRays::reset() {
 
 void EmbreeRays::first_hits(RTCScene scene, bool coherent) {
   const auto flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-  for_tiles(source_.size(), tile_rays, [&](std::size_t begin, std::size_t end) {
+  for_tiles(source_.size(), [&](std::size_t begin, std::size_t count) {
+    const std::size_t end = begin + count;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = flags;
@@ -265,7 +258,8 @@ void EmbreeRays::first_hits(RTCScene scene, bool coherent) {
 
 void EmbreeRays::any_hits(RTCScene scene, bool coherent) {
   const auto flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-  for_tiles(source_.size(), tile_rays, [&](std::size_t begin, std::size_t end) {
+  for_tiles(source_.size(), [&](std::size_t begin, std::size_t count) {
+    const std::size_t end = begin + count;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = flags;

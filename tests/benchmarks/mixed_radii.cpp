@@ -1,7 +1,5 @@
 #include "mixed_radii.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -9,6 +7,7 @@
 
 #include "measure.h"
 #include "own_particles.h"
+#include "ray_tiles.h"
 
 namespace bench {
 namespace {
@@ -35,14 +34,6 @@ struct Frame {
   std::unique_ptr<OwnParticles> own;
   std::vector<Ray> ao;
 };
-
-template <class Trace>
-void for_tiles(std::size_t count, const Trace& trace) {
-  tbb::parallel_for(std::size_t{0}, (count + tile_rays - 1) / tile_rays, [&](std::size_t tile) {
-    const std::size_t begin = tile * tile_rays;
-    trace(begin, std::min(tile_rays, count - begin));
-  });
-}
 
 }  // namespace
 

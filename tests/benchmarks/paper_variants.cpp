@@ -1,7 +1,5 @@
 #include "paper_variants.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <functional>
@@ -11,6 +9,7 @@
 #include "measure.h"
 #include "own_particles.h"
 #include "paper_tree.h"
+#include "ray_tiles.h"
 
 namespace bench {
 namespace {
@@ -58,14 +57,6 @@ Variant paper_variant(const BuiltTree& built, RayWay way) {
       [&tree, way](const Ray* rays, Hit* hits, std::size_t n) { tree.first_hits(way, rays, hits, n); },
       [&tree, way](const Ray* rays, std::uint8_t* occluded, std::size_t n) { tree.any_hits(way, rays, occluded, n); },
       {}};
-}
-
-template <class Trace>
-void for_tiles(std::size_t count, const Trace& trace) {
-  tbb::parallel_for(std::size_t{0}, (count + tile_rays - 1) / tile_rays, [&](std::size_t tile) {
-    const std::size_t begin = tile * tile_rays;
-    trace(begin, std::min(tile_rays, count - begin));
-  });
 }
 
 // The same occlusion rays for all, from the hits of the first.

@@ -1,7 +1,5 @@
 #include "particle_frames.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -10,6 +8,7 @@
 #include "embree_spheres.h"
 #include "measure.h"
 #include "own_particles.h"
+#include "ray_tiles.h"
 
 namespace bench {
 namespace {
@@ -17,15 +16,6 @@ namespace {
 using insitu::ParticleOrder;
 using insitu::kernels::Hit;
 using insitu::kernels::Ray;
-
-template <class Trace>
-void for_tiles(std::size_t count, const Trace& trace) {
-  const std::size_t tiles = (count + tile_rays - 1) / tile_rays;
-  tbb::parallel_for(std::size_t{0}, tiles, [&](std::size_t tile) {
-    const std::size_t begin = tile * tile_rays;
-    trace(begin, std::min(tile_rays, count - begin));
-  });
-}
 
 // The fastest way of Embree to trace some rays, found with one run of each.
 struct BestWay {
