@@ -6,6 +6,8 @@
 
 namespace insitu::kernels {
 
+constexpr unsigned node_fanout = 8;
+
 namespace child_order_detail {
 
 constexpr std::array<std::array<std::uint8_t, 256>, 8> make_table() {

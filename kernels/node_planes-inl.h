@@ -8,12 +8,11 @@
 
 #include <hwy/highway.h>
 
+#include "kernels/child_order.h"
 #include "kernels/pkd_leaf-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace insitu::kernels::HWY_NAMESPACE {
-
-constexpr unsigned node_fanout = 8;
 
 // A ray in f32, relative to the point where it enters the tree (see TreeMargin): one cache line.
 struct alignas(64) WalkRay {

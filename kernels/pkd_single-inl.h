@@ -11,69 +11,53 @@
 HWY_BEFORE_NAMESPACE();
 namespace insitu::kernels::HWY_NAMESPACE {
 
-// Places [begin, end), what the ray sees of them, and the box of their centres. Distances are relative to the start of
-// the slab ray.
-template <class Key, class Real>
+// Places [begin, end), what the ray sees of them, and the box of their centres.
+template <class Key>
 struct Subtree {
   std::uint64_t begin;
   std::uint64_t end;
-  Real t_enter;
-  Real t_leave;
+  double t_enter;
+  double t_leave;
   PkdBox<Key> box;
 };
 
 // The ray as split planes see it: slopes, and by how much a plane is widened to both sides along the ray: by the
 // largest radius, and a little for the rounding of the plane's distance.
-template <class Real>
 struct SlabRay {
-  Real origin[3];
-  Real inverse[3];
-  Real widening[3];
+  double origin[3];
+  double inverse[3];
+  double widening[3];
   bool negative[3];
 };
 
-// In double, from the ray's own origin, with a frame of its own for every leaf: for rays and trees of any magnitude.
-class LeafFrames {
- public:
-  using Real = double;
-
-  explicit LeafFrames(const Ray& ray) : ray_(ray) {}
-  template <class Key>
-  RayFrame frame(const PkdTree& tree, const Subtree<Key, Real>& run) const {
-    double reach = 2.0 * tree.radius_max;
-    for (int c = 0; c < 3; ++c) reach += static_cast<double>(run.box.upper[c]) - static_cast<double>(run.box.lower[c]);
-    return MakeLeafFrame(ray_, run.t_enter, reach);
-  }
-  double relative(double t) const { return t; }
-
- private:
-  const Ray& ray_;
-};
+// Every leaf has a frame of its own: for rays and trees of any magnitude.
+template <class Key>
+HWY_INLINE RayFrame FrameOfRun(const PkdTree& tree, const Ray& ray, const Subtree<Key>& run) {
+  double reach = 2.0 * tree.radius_max;
+  for (int c = 0; c < 3; ++c) reach += static_cast<double>(run.box.upper[c]) - static_cast<double>(run.box.lower[c]);
+  return MakeLeafFrame(ray, run.t_enter, reach);
+}
 
 // Tests the particles below the last split: a leaf, or any number of particles at one point.
-template <class Positions, class Frames, class Visitor>
-HWY_INLINE bool VisitRun(const PkdTree& tree, const Positions& positions, const Frames& frames,
-                         const Subtree<typename Positions::Key, typename Frames::Real>& run, const Ray& ray,
-                         Visitor& visitor) {
+template <class Positions, class Visitor>
+HWY_INLINE bool VisitRun(const PkdTree& tree, const Positions& positions, const Subtree<typename Positions::Key>& run,
+                         const Ray& ray, Visitor& visitor) {
   if (HWY_UNLIKELY(run.end - run.begin > pkd_leaf_size) && Visitor::one_of_coincident &&
       tree.radius.kind == RadiusView::Kind::uniform && tree.item(run.begin) != ray.exclude)
     return visitor.visit(tree, positions, run.begin, ray);  // equal spheres: the build puts the one to be shown first
-  const RayFrame& frame = frames.frame(tree, run);
+  const RayFrame frame = FrameOfRun(tree, ray, run);
   for (std::uint64_t begin = run.begin; begin < run.end; begin += pkd_leaf_size)
     if (VisitLeaf(tree, positions, begin, std::min(run.end, begin + pkd_leaf_size), frame, ray, visitor)) return true;
   return false;
 }
 
 // Visits the subtree `now` front to back. True: the visitor needs no more.
-template <class Positions, class Frames, class Visitor>
-HWY_INLINE bool TraverseSubtree(const PkdTree& tree, const Positions& positions, const Frames& frames,
-                                const SlabRay<typename Frames::Real>& slab,
-                                Subtree<typename Positions::Key, typename Frames::Real> now, const Ray& ray,
-                                Visitor& visitor) {
+template <class Positions, class Visitor>
+HWY_INLINE bool TraverseSubtree(const PkdTree& tree, const Positions& positions, const SlabRay& slab,
+                                Subtree<typename Positions::Key> now, const Ray& ray, Visitor& visitor) {
   using Key = typename Positions::Key;
-  using Real = typename Frames::Real;
   // The tree is balanced: 2^64 particles would be 59 levels above the leaves.
-  Subtree<Key, Real> stack[64];
+  Subtree<Key> stack[64];
   int height = 0;
   for (;;) {
     while (now.end - now.begin > pkd_leaf_size && !now.box.is_point()) {
@@ -83,9 +67,9 @@ HWY_INLINE bool TraverseSubtree(const PkdTree& tree, const Positions& positions,
       // What comes next, whichever side it is.
       positions.prefetch(now.begin + (mid - now.begin) / 2);
       positions.prefetch(mid + 1 + (now.end - mid - 1) / 2);
-      const Real at_plane = (static_cast<Real>(plane) - slab.origin[axis]) * slab.inverse[axis];
-      const Real near_leave = at_plane + slab.widening[axis];
-      const Real far_enter = at_plane - slab.widening[axis];
+      const double at_plane = (static_cast<double>(plane) - slab.origin[axis]) * slab.inverse[axis];
+      const double near_leave = at_plane + slab.widening[axis];
+      const double far_enter = at_plane - slab.widening[axis];
       const bool go_near = now.t_enter <= near_leave;
       const bool go_far = far_enter <= now.t_leave;
       const bool near_is_lower = !slab.negative[axis];
@@ -93,7 +77,7 @@ HWY_INLINE bool TraverseSubtree(const PkdTree& tree, const Positions& positions,
       if (go_near && go_far) {
         // The ray crosses the widened plane within the subtree: the particle on the plane may be hit.
         if (visitor.visit(tree, positions, mid, ray)) return true;
-        Subtree<Key, Real>& far = stack[height++];
+        Subtree<Key>& far = stack[height++];
         far = now;
         far.t_enter = std::max(now.t_enter, far_enter);
         if (near_is_lower) {
@@ -114,11 +98,11 @@ HWY_INLINE bool TraverseSubtree(const PkdTree& tree, const Positions& positions,
         now.box.lower[axis] = plane;
       }
     }
-    if (now.end > now.begin && VisitRun(tree, positions, frames, now, ray, visitor)) return true;
+    if (now.end > now.begin && VisitRun(tree, positions, now, ray, visitor)) return true;
     do {
       if (height == 0) return false;
       now = stack[--height];
-      now.t_leave = std::min(now.t_leave, frames.relative(visitor.t_limit()));
+      now.t_leave = std::min(now.t_leave, visitor.t_limit());
     } while (now.t_enter > now.t_leave);
   }
 }
@@ -137,8 +121,8 @@ HWY_INLINE PkdBox<Key> RootBox(const PkdTree& tree) {
 template <class Positions, class Visitor>
 HWY_INLINE void TraverseTree(const PkdTree& tree, const Positions& positions, const Ray& ray, Visitor& visitor) {
   constexpr double parallel = 1e-200;  // slower directions count as this: products stay finite, the signs right
-  SlabRay<double> slab;
-  Subtree<typename Positions::Key, double> root;
+  SlabRay slab;
+  Subtree<typename Positions::Key> root;
   root.begin = 0;
   root.end = tree.count;
   root.t_enter = ray.t_min;
@@ -156,8 +140,7 @@ HWY_INLINE void TraverseTree(const PkdTree& tree, const Positions& positions, co
     root.t_enter = std::max(root.t_enter, std::min(at_lower, at_upper) - slab.widening[c]);
     root.t_leave = std::min(root.t_leave, std::max(at_lower, at_upper) + slab.widening[c]);
   }
-  if (tree.count != 0 && root.t_enter <= root.t_leave)
-    TraverseSubtree(tree, positions, LeafFrames(ray), slab, root, ray, visitor);
+  if (tree.count != 0 && root.t_enter <= root.t_leave) TraverseSubtree(tree, positions, slab, root, ray, visitor);
 }
 
 }  // namespace insitu::kernels::HWY_NAMESPACE

@@ -16,16 +16,16 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace insitu::kernels {
+#include "kernels/child_order.h"
 
-constexpr unsigned treelet_fanout = 8;
+namespace insitu::kernels {
 
 struct alignas(64) TreeletNode {
   float origin[3];           // lower corner, relative to Treelets::frame
   std::uint8_t exponent[3];  // a step along axis c is 2^(exponent[c] - 127)
   std::uint8_t axes;         // split axes of the three levels, two bits each from bit 0, widest first; bit 6 is set
-  std::uint8_t lower[3][treelet_fanout];  // a child without particles has lower > upper
-  std::uint8_t upper[3][treelet_fanout];
+  std::uint8_t lower[3][node_fanout];  // a child without particles has lower > upper
+  std::uint8_t upper[3][node_fanout];
 };
 static_assert(sizeof(TreeletNode) == 64);
 

@@ -15,8 +15,8 @@
 namespace insitu {
 namespace {
 
+using kernels::node_fanout;
 using kernels::PkdTree;
-using kernels::treelet_fanout;
 using kernels::TreeletNode;
 using kernels::TreeletRun;
 using kernels::Treelets;
@@ -116,8 +116,8 @@ Box encode(const Box* children, unsigned bits, TreeletNode& node) {
     if (!children[k].is_empty()) around.include(children[k]);
   node.axes = axes_of(children, bits);
   for (int c = 0; c < 3; ++c) {
-    std::fill_n(node.lower[c], treelet_fanout, std::uint8_t{255});
-    std::fill_n(node.upper[c], treelet_fanout, std::uint8_t{0});
+    std::fill_n(node.lower[c], node_fanout, std::uint8_t{255});
+    std::fill_n(node.upper[c], node_fanout, std::uint8_t{0});
     node.origin[c] = around.is_empty() ? 0.0f : rounded_down(around.lower[c]);
     const double from = static_cast<double>(node.origin[c]);
     // The smallest power of two of which 255 reach from end to end. Where there is nothing, near planes have to be
@@ -155,7 +155,7 @@ void build(const PkdTree& tree, const Treelets& shape, TreeletNode* nodes) {
   for_nodes(boxes.size(), [&](std::uint64_t index) {
     const TreeletRun run = run_of_node(shape, last, index);
     const unsigned bits = shape.bits_at(last);
-    Box children[treelet_fanout];
+    Box children[node_fanout];
     for (unsigned k = 0; k < 1u << bits; ++k)
       children[k] = box_of_run(tree, positions, child_run(run, bits, k), margin);
     boxes[index] = encode(children, bits, nodes[shape.level_begin[last] + index]);

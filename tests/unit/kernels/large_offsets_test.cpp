@@ -153,7 +153,7 @@ class HugeTree {
       node.origin[axis] = static_cast<float>((axis == 0 ? 99.0 : -60.0) * unit_);
       node.exponent[axis] = static_cast<std::uint8_t>(127 + std::ilogb(unit_));  // 255 steps of more than half a unit
     }
-    for (unsigned k = 0; k < kernels::treelet_fanout; ++k) {
+    for (unsigned k = 0; k < kernels::node_fanout; ++k) {
       const bool is_child = k < 1u << bits;
       const TreeletRun child = is_child ? child_run(run, bits, k) : TreeletRun{0, 0};
       const bool is_met = is_child && child.begin + child.span > begin_;
