@@ -213,7 +213,7 @@ typedef struct insitu_particles_desc {
   uint32_t flags;    /* INSITU_PARTICLES_* */
   uint32_t reserved; /* 0 */
   /* Most memory for treelets, as a part of the bytes of the positions: 0 = none, 0.15 = for 1.8 bytes per particle in
-   * f32. Treelets are boxes around runs of some 16 particles: pictures are made about 1.5 to 2.5 times as fast, and a
+   * f32. Treelets are boxes around runs of some 16 particles: rays take half to three quarters of the time, and a
    * few large particles among many small ones cost little. Fewer, or none, are made when the share is too small or
    * max_extra_bytes leaves no room; insitu_stats says what was made. */
   double treelet_share;
