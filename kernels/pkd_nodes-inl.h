@@ -20,20 +20,16 @@
 HWY_BEFORE_NAMESPACE();
 namespace insitu::kernels::HWY_NAMESPACE {
 
-// The split axis of the tree: the longest side, as PkdBox::split_axis has it. Splits at a depth of `depth` levels.
-struct WidestSide {
+// The split axis of the tree, as PkdBox::split_axis has it. Splits at a depth of `depth` levels.
+struct LongSide {
   template <class Key>
   static HWY_INLINE unsigned Axis(const Key* lower, const Key* upper, unsigned /*depth*/) {
-    const Key x = upper[0] - lower[0];
-    const Key y = upper[1] - lower[1];
-    const Key z = upper[2] - lower[2];
-    const unsigned of_two = y > x ? 1 : 0;
-    return z > (y > x ? y : x) ? 2 : of_two;
+    return static_cast<unsigned>(split_axis_of(upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2]));
   }
 };
 
 // The Nodes of walk-inl.h.
-template <class Positions, class SplitRule = WidestSide>
+template <class Positions, class SplitRule = LongSide>
 class PkdNodes {
  public:
   using Key = typename Positions::Key;
@@ -69,7 +65,9 @@ class PkdNodes {
         wide_(static_cast<float>((tree.radius_max + margin.value) * (1.0 + 4.0 * f32_unit))),
         few_for_all_(few_for_all && tree.radius.kind == RadiusView::Kind::uniform) {
     unsigned depth = 1;
-    while (tree.count >> depth > longest) ++depth;
+    // With one more place the levels would be shared out evenly: the smallest subtree has its share, rounded down, less
+    // that place.
+    while (((tree.count + 1) >> depth) - 1 > longest) ++depth;
     levels_ = (depth + 2) / 3;
     root_bits_ = depth - 3 * (levels_ - 1);
   }

@@ -28,10 +28,8 @@ class ItemOrder {
       if (box.is_point()) return PutPreferredFirst(begin, end);
       const int axis = box.split_axis();
       const std::size_t mid = begin + (end - begin) / 2;
-      if (!scratch_.nearly_ordered || !SplitInPlace(begin, end, mid, axis, box)) {
-        exchange_sides(*this, {begin, mid}, {mid + 1, end}, axis, PutMedian(begin, end, mid, axis));
-      }
-      const Key median = items_[mid].x[axis];
+      const Key median = PutMedian(begin, end, mid, axis);
+      exchange_sides(*this, {begin, mid}, {mid + 1, end}, axis, median);
       PkdBox<Key> left = box;
       left.upper[axis] = box.lower[axis] = median;
       Order(begin, mid, left);
@@ -51,31 +49,6 @@ class ItemOrder {
 
  private:
   KeyRun<Key> RunAt(std::uint64_t place, int axis) const { return {items_[place].x + axis, 4, true}; }
-
-  // Splits items of which few are on the wrong side. False, and nothing has moved, when the median is too far from the
-  // old one.
-  bool SplitInPlace(std::size_t begin, std::size_t end, std::size_t mid, int axis, const PkdBox<Key>& box) {
-    const Key old = items_[mid].x[axis];
-    if (end - begin <= 2 * exchange_block) {
-      // As many too large before it as too small behind it: it is the median still.
-      Place left[exchange_block + list_slack];
-      Place right[exchange_block + list_slack];
-      const std::size_t above = list(begin, mid - begin, axis, Relation::greater, old, left);
-      const std::size_t below = list(mid + 1, end - mid - 1, axis, Relation::less, old, right);
-      if (above == below) exchange(begin, left, mid + 1, right, above);
-      return above == below;
-    }
-    const Key width = (box.upper[axis] - box.lower[axis]) / 64;
-    const std::size_t rank = mid - begin;
-    const BandCount listed = ListBandOf<4>(RunAt(begin, axis), end - begin, old - width, old + width, Place{0},
-                                           scratch_.keys, scratch_.places);
-    if (rank < listed.below || rank >= listed.below + listed.inside) return false;
-    const Ranked<Key> median = SelectListedOf(scratch_.keys, scratch_.places, static_cast<std::size_t>(listed.inside),
-                                              rank - static_cast<std::size_t>(listed.below));
-    std::swap(items_[mid], items_[begin + static_cast<std::size_t>(median.place)]);
-    exchange_sides(*this, {begin, mid}, {mid + 1, end}, axis, median.key);
-    return true;
-  }
 
   // Brings an item with the median key to `mid`, and returns that key.
   Key PutMedian(std::size_t begin, std::size_t end, std::size_t mid, int axis) {

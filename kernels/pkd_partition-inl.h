@@ -24,10 +24,10 @@ template <class Key>
 using KeyTag = hn::CappedTag<Key, 16>;
 
 template <int components, class Key>
-HWY_INLINE hn::VFromD<KeyTag<Key>> LoadKeys(const Key* first) {
+HWY_INLINE hn::VFromD<KeyTag<Key>> LoadKeys(const Key* first, int axis) {
   const KeyTag<Key> d;
 #if HWY_TARGET == HWY_SCALAR
-  return hn::LoadU(d, first);  // one lane: the first scalar is the key
+  return hn::LoadU(d, first + axis);  // one lane
 #else
   if constexpr (components == 1) {
     return hn::LoadU(d, first);
@@ -37,10 +37,10 @@ HWY_INLINE hn::VFromD<KeyTag<Key>> LoadKeys(const Key* first) {
     const auto v1 = hn::LoadU(d, first + lanes);
     const auto v2 = hn::LoadU(d, first + 2 * lanes);
     if constexpr (components == 3) {
-      // Key k is scalar 3k of the three vectors.
+      // Key k is scalar 3k + axis of the three vectors.
       const hn::RebindToUnsigned<KeyTag<Key>> du;
       const auto iota = hn::Iota(du, ListedPlace<Key>{0});
-      const auto scalar = hn::Add(iota, hn::Add(iota, iota));
+      const auto scalar = hn::Add(hn::Set(du, static_cast<ListedPlace<Key>>(axis)), hn::Add(iota, hn::Add(iota, iota)));
       const auto n = static_cast<ListedPlace<Key>>(lanes);
       const auto lane = hn::IndicesFromVec(d, hn::And(scalar, hn::Set(du, static_cast<ListedPlace<Key>>(n - 1))));
       const auto in_v0 = hn::RebindMask(d, hn::Lt(scalar, hn::Set(du, n)));
@@ -56,27 +56,25 @@ HWY_INLINE hn::VFromD<KeyTag<Key>> LoadKeys(const Key* first) {
 #endif
 }
 
-// body(i, keys, valid): vector by vector, `valid` marks the lanes that are there.
+// body(i, keys, valid): vector by vector, in order; `valid` marks the lanes that are there, and new.
 template <int components, class Key, class Body>
 HWY_INLINE void ForKeys(const KeyRun<Key>& run, std::size_t count, const Body& body) {
   const KeyTag<Key> d;
   const std::size_t lanes = hn::Lanes(d);
   const auto all = hn::FirstN(d, lanes);
   std::size_t i = 0;
-  // Vectors that start at an axis other than the first reach into the record behind: only there must be one.
-  const std::size_t whole = run.padded || components == 1 ? count : count == 0 ? 0 : count - 1;
-  for (; i + lanes <= whole; i += lanes) body(i, LoadKeys<components>(run.first + i * components), all);
+  for (; i + lanes <= count; i += lanes) body(i, LoadKeys<components>(run.first + i * components, run.axis), all);
+  if (i == count) return;
   if (run.padded) {
-    if (i < count) body(i, LoadKeys<components>(run.first + i * components), hn::FirstN(d, count - i));
-    return;
-  }
-  while (i < count) {
-    HWY_ALIGN Key tail[16] = {};
-    const std::size_t n = std::min(lanes, count - i);
-    for (std::size_t k = 0; k < n; ++k) tail[k] = run.first[(i + k) * components];
-    for (std::size_t k = n; k < lanes; ++k) tail[k] = tail[0];
-    body(i, hn::Load(d, tail), hn::FirstN(d, n));
-    i += n;
+    body(i, LoadKeys<components>(run.first + i * components, run.axis), hn::FirstN(d, count - i));
+  } else if (count >= lanes) {
+    // The last vector once more, for those of its keys that are new.
+    const std::size_t last = count - lanes;
+    body(last, LoadKeys<components>(run.first + last * components, run.axis), hn::Not(hn::FirstN(d, i - last)));
+  } else {
+    HWY_ALIGN Key few[16] = {};
+    for (std::size_t k = 0; k < count; ++k) few[k] = run.first[k * components + static_cast<std::size_t>(run.axis)];
+    body(0, hn::Load(d, few), hn::FirstN(d, count));
   }
 }
 

@@ -60,64 +60,110 @@ Ranked<double> SelectF64(double* keys, std::uint64_t* places, std::size_t count,
   return SelectListedOf(keys, places, count, rank);
 }
 
+template <class D, class Key, bool check>
+struct LowHigh {
+  hn::Vec<D> low;
+  hn::Vec<D> high;
+  hn::Mask<D> finite;
+
+  explicit LowHigh(D d)
+      : low(hn::Set(d, std::numeric_limits<Key>::infinity())),
+        high(hn::Neg(low)),
+        finite(hn::FirstN(d, hn::Lanes(d))) {}
+  HWY_INLINE void Include(D d, hn::Vec<D> v) {
+    low = hn::Min(low, v);
+    high = hn::Max(high, v);
+    // False for NaN as well.
+    if constexpr (check) finite = hn::And(finite, hn::Lt(hn::Abs(v), hn::Set(d, std::numeric_limits<Key>::infinity())));
+  }
+  HWY_INLINE void Include(const LowHigh& other) {
+    low = hn::Min(low, other.low);
+    high = hn::Max(high, other.high);
+    finite = hn::And(finite, other.finite);
+  }
+};
+
+// One by one, `k` being the axis of the first scalar.
+template <class Key, bool check>
+bool IncludeScalars(const Key* first, std::size_t scalars, Key lower[3], Key upper[3]) {
+  bool finite = true;
+  for (std::size_t i = 0; i < scalars; ++i) {
+    if constexpr (check) finite = finite && std::abs(first[i]) < std::numeric_limits<Key>::infinity();
+    lower[i % 3] = std::min(lower[i % 3], first[i]);
+    upper[i % 3] = std::max(upper[i % 3], first[i]);
+  }
+  return finite;
+}
+
+// A vector of four scalars for each record: its own three, and the first of the next; the last one, and `records` is at
+// least 2, comes with the scalar before it, and is turned round.
+template <class Key, bool check>
+bool BoundsOfFew(const Key* first, std::size_t records, Key lower[3], Key upper[3]) {
+  using D = hn::CappedTag<Key, 4>;
+  const D d;
+  LowHigh<D, Key, check> a(d);
+  LowHigh<D, Key, check> b(d);
+  std::size_t i = 0;
+  for (; i + 2 < records; i += 2) {
+    a.Include(d, hn::LoadU(d, first + 3 * i));
+    b.Include(d, hn::LoadU(d, first + 3 * i + 3));
+  }
+  if (i + 1 < records) a.Include(d, hn::LoadU(d, first + 3 * i));
+  const hn::RebindToSigned<D> di;
+  const auto turned = hn::IndicesFromVec(d, hn::And(hn::Add(hn::Iota(di, 0), hn::Set(di, 1)), hn::Set(di, 3)));
+  b.Include(d, hn::TableLookupLanes(hn::LoadU(d, first + 3 * records - 4), turned));
+  a.Include(b);
+  HWY_ALIGN Key low[4];
+  HWY_ALIGN Key high[4];
+  hn::Store(a.low, d, low);
+  hn::Store(a.high, d, high);
+  std::copy_n(low, 3, lower);
+  std::copy_n(high, 3, upper);
+  return hn::AllTrue(d, a.finite);
+}
+
 // Three vectors are whole records in each lane: lane k of them belongs to axis k mod 3.
-template <class Key>
+template <class Key, bool check>
 bool Bounds(const Key* first, std::size_t records, Key lower[3], Key upper[3]) {
+  if constexpr (hn::MaxLanes(hn::CappedTag<Key, 4>()) == 4)
+    if (records >= 2 && records < 64) return BoundsOfFew<Key, check>(first, records, lower, upper);
   const KeyTag<Key> d;
   const std::size_t lanes = hn::Lanes(d);
   constexpr Key infinity = std::numeric_limits<Key>::infinity();
-  const auto limit = hn::Set(d, infinity);
-  auto low0 = limit;
-  auto low1 = limit;
-  auto low2 = limit;
-  auto high0 = hn::Neg(limit);
-  auto high1 = high0;
-  auto high2 = high0;
-  auto finite = hn::Lt(hn::Zero(d), limit);
+  LowHigh<KeyTag<Key>, Key, check> v[3] = {LowHigh<KeyTag<Key>, Key, check>(d), LowHigh<KeyTag<Key>, Key, check>(d),
+                                           LowHigh<KeyTag<Key>, Key, check>(d)};
   const std::size_t scalars = 3 * records;
   std::size_t i = 0;
-  for (; i + 3 * lanes <= scalars; i += 3 * lanes) {
-    const auto v0 = hn::LoadU(d, first + i);
-    const auto v1 = hn::LoadU(d, first + i + lanes);
-    const auto v2 = hn::LoadU(d, first + i + 2 * lanes);
-    // False for NaN as well.
-    finite = hn::And(
-        finite, hn::And(hn::Lt(hn::Abs(v0), limit), hn::And(hn::Lt(hn::Abs(v1), limit), hn::Lt(hn::Abs(v2), limit))));
-    low0 = hn::Min(low0, v0);
-    low1 = hn::Min(low1, v1);
-    low2 = hn::Min(low2, v2);
-    high0 = hn::Max(high0, v0);
-    high1 = hn::Max(high1, v1);
-    high2 = hn::Max(high2, v2);
+  for (; i + 3 * lanes <= scalars; i += 3 * lanes)
+    for (std::size_t part = 0; part < 3; ++part) v[part].Include(d, hn::LoadU(d, first + i + part * lanes));
+  bool finite = true;
+  std::fill_n(lower, 3, infinity);
+  std::fill_n(upper, 3, -infinity);
+  HWY_ALIGN Key low[16];
+  HWY_ALIGN Key high[16];
+  for (std::size_t part = 0; part < 3; ++part) {
+    finite = finite && hn::AllTrue(d, v[part].finite);
+    hn::StoreU(v[part].low, d, low);
+    hn::StoreU(v[part].high, d, high);
+    for (std::size_t k = 0; k < lanes; ++k) {
+      const std::size_t axis = (part * lanes + k) % 3;
+      lower[axis] = std::min(lower[axis], low[k]);
+      upper[axis] = std::max(upper[axis], high[k]);
+    }
   }
-  if (!hn::AllTrue(d, finite)) return false;
-  HWY_ALIGN Key low[48];
-  HWY_ALIGN Key high[48];
-  hn::StoreU(low0, d, low);
-  hn::StoreU(low1, d, low + lanes);
-  hn::StoreU(low2, d, low + 2 * lanes);
-  hn::StoreU(high0, d, high);
-  hn::StoreU(high1, d, high + lanes);
-  hn::StoreU(high2, d, high + 2 * lanes);
-  Key box[2][3] = {{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
-  for (std::size_t k = 0; k < 3 * lanes; ++k) {
-    box[0][k % 3] = std::min(box[0][k % 3], low[k]);
-    box[1][k % 3] = std::max(box[1][k % 3], high[k]);
-  }
-  for (; i < scalars; ++i) {
-    if (!(std::abs(first[i]) < infinity)) return false;
-    box[0][i % 3] = std::min(box[0][i % 3], first[i]);
-    box[1][i % 3] = std::max(box[1][i % 3], first[i]);
-  }
-  std::copy_n(box[0], 3, lower);
-  std::copy_n(box[1], 3, upper);
-  return true;
+  return IncludeScalars<Key, check>(first + i, scalars - i, lower, upper) && finite;
 }
 bool BoundsF32(const float* first, std::size_t records, float lower[3], float upper[3]) {
-  return Bounds(first, records, lower, upper);
+  return Bounds<float, true>(first, records, lower, upper);
 }
 bool BoundsF64(const double* first, std::size_t records, double lower[3], double upper[3]) {
-  return Bounds(first, records, lower, upper);
+  return Bounds<double, true>(first, records, lower, upper);
+}
+void FiniteBoundsF32(const float* first, std::size_t records, float lower[3], float upper[3]) {
+  Bounds<float, false>(first, records, lower, upper);
+}
+void FiniteBoundsF64(const double* first, std::size_t records, double lower[3], double upper[3]) {
+  Bounds<double, false>(first, records, lower, upper);
 }
 
 void OrderF32(PkdItem<float>* items, std::size_t count, const PkdBox<float>& box, const OrderScratch<float>& scratch) {
@@ -142,6 +188,8 @@ HWY_EXPORT(SelectF32);
 HWY_EXPORT(SelectF64);
 HWY_EXPORT(BoundsF32);
 HWY_EXPORT(BoundsF64);
+HWY_EXPORT(FiniteBoundsF32);
+HWY_EXPORT(FiniteBoundsF64);
 HWY_EXPORT(OrderF32);
 HWY_EXPORT(OrderF64);
 
@@ -172,6 +220,12 @@ bool bounds_of_records(const float* first, std::size_t records, float lower[3], 
 }
 bool bounds_of_records(const double* first, std::size_t records, double lower[3], double upper[3]) {
   return HWY_DYNAMIC_DISPATCH(BoundsF64)(first, records, lower, upper);
+}
+void bounds_of_finite_records(const float* first, std::size_t records, float lower[3], float upper[3]) {
+  HWY_DYNAMIC_DISPATCH(FiniteBoundsF32)(first, records, lower, upper);
+}
+void bounds_of_finite_records(const double* first, std::size_t records, double lower[3], double upper[3]) {
+  HWY_DYNAMIC_DISPATCH(FiniteBoundsF64)(first, records, lower, upper);
 }
 void order_items(PkdItem<float>* items, std::size_t count, const PkdBox<float>& box,
                  const OrderScratch<float>& scratch) {

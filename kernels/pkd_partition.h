@@ -16,12 +16,14 @@
 
 namespace insitu::kernels {
 
-// Coordinates along one axis of consecutive places: key i is first[i * components]; components is 1, 3 or 4.
+// Coordinates along one axis of consecutive places: key i is first[i * components + axis]; components is 1, 3 or 4.
+// With 3 `first` is the first scalar of a record; otherwise axis is 0. With 4 a run is always padded.
 template <class Key>
 struct KeyRun {
   const Key* first;
   int components;
   bool padded;  // run_padding scalars behind the last record may be read
+  int axis = 0;
 };
 constexpr std::size_t run_padding = 64;
 
@@ -76,9 +78,12 @@ struct Ranked {
 Ranked<float> select_listed(float* keys, std::uint32_t* places, std::size_t count, std::size_t rank);
 Ranked<double> select_listed(double* keys, std::uint64_t* places, std::size_t count, std::size_t rank);
 
-// Bounds of packed records x y z x y z ... False, and nothing written, when any coordinate is not finite.
+// Bounds of packed records x y z x y z ... False when any coordinate is not finite: then they mean nothing.
 bool bounds_of_records(const float* first, std::size_t records, float lower[3], float upper[3]);
 bool bounds_of_records(const double* first, std::size_t records, double lower[3], double upper[3]);
+// The same where all are known to be finite.
+void bounds_of_finite_records(const float* first, std::size_t records, float lower[3], float upper[3]);
+void bounds_of_finite_records(const double* first, std::size_t records, double lower[3], double upper[3]);
 
 // A particle in the scratch memory of the build: small subtrees are built there, in cache, and applied in one go.
 template <class Key>
@@ -98,7 +103,6 @@ struct OrderScratch {
   PreferLocal prefer;
   const void* context;
   std::uint64_t leaf = pkd_leaf_size;  // runs of at most so many are left in any order
-  bool nearly_ordered = false;         // medians are then searched near the old ones
 };
 
 // Puts `count` items, below 2^32, into the order of a tree within `box`. run_padding scalars behind them can be read.

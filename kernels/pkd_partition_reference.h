@@ -11,7 +11,7 @@ namespace insitu::kernels {
 
 template <class Key>
 Key key_of_run(const KeyRun<Key>& run, std::size_t i) {
-  return run.first[i * static_cast<std::size_t>(run.components)];
+  return run.first[i * static_cast<std::size_t>(run.components) + static_cast<std::size_t>(run.axis)];
 }
 
 template <class Key>

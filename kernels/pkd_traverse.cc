@@ -15,10 +15,8 @@ namespace insitu::kernels::HWY_NAMESPACE {
 // Fewer rays than this go one by one.
 constexpr std::size_t fewest_together = 4;
 
-// Leaves of the walk: measured. The build is free to leave up to pkd_leaf_size particles in any order, so that what a
-// walk splits has to be larger.
-constexpr std::uint64_t longest_leaf = 64;
-static_assert(longest_leaf >= 2 * pkd_leaf_size);
+// The walk goes down to the leaves that the build has left, and no farther: their particles are in any order.
+constexpr std::uint64_t longest_leaf = pkd_leaf_size;
 
 bool IsWalked(const PkdTree& tree, const TreeMargin& margin, std::size_t rays) {
   return rays >= fewest_together && margin.fits && tree.count > pkd_leaf_size;

@@ -32,11 +32,18 @@ struct Target {
   }
 };
 
+int longest_side(const PkdBox<float>& box) {
+  int axis = 0;
+  for (int c = 1; c < 3; ++c)
+    if (box.upper[c] - box.lower[c] > box.upper[axis] - box.lower[axis]) axis = c;
+  return axis;
+}
+
 // Recursive median selection. `node` is the place of the root in the heap; in order it is `first` and half the count.
 void build(const Target& target, Record* records, std::uint64_t count, std::uint64_t first, std::uint64_t node,
            int cyclic_axis, const PkdBox<float>& box) {
   if (count == 0) return;
-  const int axis = target.rule == AxisRule::round_robin ? cyclic_axis : box.split_axis();
+  const int axis = target.rule == AxisRule::round_robin ? cyclic_axis : longest_side(box);
   const std::uint64_t left = target.layout == TreeLayout::heap ? left_subtree_size(count) : count / 2;
   if (box.is_point()) {
     // Of particles at one point the smallest item stands first, as the library's traversal expects.

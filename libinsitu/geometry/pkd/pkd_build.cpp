@@ -5,9 +5,9 @@
 
 #include <atomic>
 #include <memory>
-#include <optional>
 
-#include "geometry/pkd/pkd_repair.h"
+#include "geometry/pkd/pkd_mend.h"
+#include "geometry/pkd/pkd_split.h"
 
 namespace insitu {
 namespace {
@@ -51,7 +51,7 @@ class PkdBuild {
 
   void build(std::uint64_t begin, std::uint64_t end, const Box& box) {
     const FloatEnvironment guard;
-    if (end - begin <= block_size<Key>) return build_block(begin, end, box, false);
+    if (end - begin <= block_size<Key>) return build_block(begin, end, box);
     if (box.is_point()) return put_preferred_first(begin, end);
     const int axis = box.split_axis();
     const std::uint64_t mid = begin + (end - begin) / 2;
@@ -64,26 +64,17 @@ class PkdBuild {
   // The same for particles that are nearly in order. Subtrees that turn out not to be are built.
   void repair(std::uint64_t begin, std::uint64_t end, const Box& box) {
     const FloatEnvironment guard;
-    if (end - begin <= block_size<Key>) return build_block(begin, end, box, true);
-    if (!bounds_) bounds_.emplace(store_, end - begin);
-    if (box.is_point()) return put_preferred_first(begin, end);
-    const int axis = box.split_axis();
-    const std::uint64_t mid = begin + (end - begin) / 2;
-    NodeRepair<Store> node(store_, *bounds_, {begin, end}, axis);
-    Key median{};
-    if (!node.split(mid, box.upper[axis] - box.lower[axis], median)) return build(begin, end, box);
-    moved_ += node.moved();
-    Box left = box;
-    Box right = box;
-    left.upper[axis] = right.lower[axis] = median;
-    tbb::parallel_invoke([&] { repair(begin, mid, left); }, [&] { repair(mid + 1, end, right); });
+    moved_ += TreeMend<Store>(store_, leaf_)
+                  .mend(
+                      begin, end, box, [this](std::uint64_t b, std::uint64_t e, const Box& of) { build(b, e, of); },
+                      [this](std::uint64_t b, std::uint64_t e) { put_preferred_first(b, e); });
   }
 
   std::uint64_t moved() const { return moved_; }
 
  private:
   // Orders a subtree in cache, and moves the data once.
-  void build_block(std::uint64_t begin, std::uint64_t end, const Box& box, bool nearly_ordered) {
+  void build_block(std::uint64_t begin, std::uint64_t end, const Box& box) {
     const auto n = static_cast<std::size_t>(end - begin);
     if (n <= leaf_) return;
     BlockScratch<Key>& scratch = scratch_.local();
@@ -100,8 +91,7 @@ class PkdBuild {
       const Block& of = *static_cast<const Block*>(context);
       return of.store.prefer(of.begin + a, of.begin + b);
     };
-    kernels::order_items(items, n, box,
-                         {scratch.keys.get(), scratch.places.get(), prefer, &block, leaf_, nearly_ordered});
+    kernels::order_items(items, n, box, {scratch.keys.get(), scratch.places.get(), prefer, &block, leaf_});
     std::uint64_t moved = 0;
     for (std::size_t i = 0; i < n; ++i) moved += items[i].local != i ? 1 : 0;
     if (moved == 0) return;
@@ -122,7 +112,6 @@ class PkdBuild {
   Store& store_;
   const std::uint64_t leaf_;
   tbb::enumerable_thread_specific<BlockScratch<Key>> scratch_;
-  std::optional<RunBounds<Store>> bounds_;
   std::atomic<std::uint64_t> moved_{0};
 };
 
@@ -170,11 +159,13 @@ constexpr double clearly_longest = 1.02;
 
 template <class Key>
 bool is_clear(const PkdBox<Key>& box, int axis) {
+  const auto side = [&box](int of) {
+    return static_cast<double>((box.upper[of] - box.lower[of]) * kernels::side_weights<Key>[of]);
+  };
   double longest_other = 0.0;
   for (int other = 0; other < 3; ++other)
-    if (other != axis)
-      longest_other = std::max(longest_other, static_cast<double>(box.upper[other] - box.lower[other]));
-  return static_cast<double>(box.upper[axis] - box.lower[axis]) > clearly_longest * longest_other;
+    if (other != axis) longest_other = std::max(longest_other, side(other));
+  return side(axis) > clearly_longest * longest_other;
 }
 
 template <class Key>

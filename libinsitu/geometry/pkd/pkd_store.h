@@ -3,6 +3,8 @@
 // Beside what kernels/pkd_exchange.h asks of a Store:
 //   KeyRun<Key> keys(begin, count, axis, buffer)   coordinates of places, where they are or in `buffer`; count <=
 //                                                  most_keys
+//   const Key* records(begin)          packed x y z x y z ... from that place on; nullptr where they are not packed
+//   void prefetch(begin, count)        asks for coordinates from memory; places behind the last one may be named
 //   void swap(a, b)
 //   bool prefer(a, b)                  the particle at place a is to be shown rather than the coincident one at b
 //   void apply(begin, items, n, bytes) the particle now at begin + i is the one that was at begin + items[i].local;
@@ -60,6 +62,8 @@ class IndexStore {
   KeyRun<Key> keys(std::uint64_t begin, std::size_t count, int axis, Key* buffer) const {
     return gather_keys(positions_, begin, count, axis, buffer);
   }
+  static constexpr const Key* records(std::uint64_t) { return nullptr; }
+  void prefetch(std::uint64_t, std::uint64_t) const {}
   Key key(std::uint64_t place, int axis) const { return positions_.key(place, axis); }
   std::size_t list(std::uint64_t begin, std::size_t count, int axis, kernels::Relation relation, Key pivot,
                    Place* places) const {
@@ -101,7 +105,12 @@ class PackedStore {
 
   static constexpr std::size_t bytes_per_item() { return 0; }
   KeyRun<Key> keys(std::uint64_t begin, std::size_t, int axis, Key*) const {
-    return {records_[begin].x + axis, 3, false};
+    return {records_[begin].x, 3, false, axis};
+  }
+  const Key* records(std::uint64_t begin) const { return records_[begin].x; }
+  void prefetch(std::uint64_t begin, std::uint64_t count) const {
+    const auto* const bytes = reinterpret_cast<const char*>(records_) + begin * sizeof(PkdRecord<K>);
+    for (std::uint64_t at = 0; at < count * sizeof(PkdRecord<K>); at += 64) __builtin_prefetch(bytes + at);
   }
   Key key(std::uint64_t place, int axis) const { return records_[place].x[axis]; }
   std::size_t list(std::uint64_t begin, std::size_t count, int axis, kernels::Relation relation, Key pivot,
@@ -171,10 +180,18 @@ class ColumnsStore {
   static constexpr std::size_t bytes_per_item() { return 64; }
   KeyRun<Key> keys(std::uint64_t begin, std::size_t count, int axis, Key* buffer) const {
     if constexpr (std::is_same_v<Positions, kernels::PlacedPositions<Key>>) {
-      if (positions_.packed_records()) return {positions_.scalars(begin, axis), 3, false};
+      if (positions_.packed_records()) return {positions_.scalars(begin, 0), 3, false, axis};
       if (positions_.packed_columns()) return {positions_.scalars(begin, axis), 1, false};
     }
     return gather_keys(positions_, begin, count, axis, buffer);
+  }
+  const Key* records(std::uint64_t begin) const {
+    if constexpr (std::is_same_v<Positions, kernels::PlacedPositions<Key>>)
+      if (positions_.packed_records()) return positions_.scalars(begin, 0);
+    return nullptr;
+  }
+  void prefetch(std::uint64_t begin, std::uint64_t count) const {
+    for (std::uint64_t i = 0; i < count; ++i) positions_.prefetch(begin + i);
   }
   Key key(std::uint64_t place, int axis) const { return positions_.key(place, axis); }
   std::size_t list(std::uint64_t begin, std::size_t count, int axis, kernels::Relation relation, Key pivot,

@@ -200,7 +200,7 @@ TEST_P(Rebuild, AfterEveryDisplacement) {
   std::uint64_t seed = 0;
   for (const Shape shape : {Shape::uniform, Shape::clustered, Shape::planar, Shape::grid, Shape::coincident_groups})
     for (const std::uint64_t count : {3000u, 140000u}) {
-      // Above a block: the path by runs, for a layout of every kind.
+      // More than one thread mends at a time: for a layout of every kind.
       const bool is_short = GetParam().memory == Memory::records_f32 || GetParam().memory == Memory::columns_f64;
       if (count > 10000 && (!is_short || shape != Shape::uniform)) continue;
       Host host(GetParam().memory, unit_cloud(shape, count, ++seed));
@@ -217,7 +217,8 @@ TEST_P(Rebuild, AfterEveryDisplacement) {
           EXPECT_EQ(how.how, How::reused) << what;
           EXPECT_EQ(how.moved, 0u) << what;
         } else if (amount < 0.1) {
-          EXPECT_EQ(how.how, How::repaired) << what;
+          // So little may leave all on their sides.
+          EXPECT_TRUE(how.how == How::repaired || (amount < 0.01 && how.how == How::reused)) << what;
           EXPECT_LT(how.moved, count / 4) << what;
         }
       }

@@ -25,9 +25,10 @@ class CountingStore {
   using Place = std::uint32_t;
   explicit CountingStore(std::vector<Record>& records) : records_(records) {}
 
-  KeyRun<float> keys(std::uint64_t begin, std::size_t count, int axis, float*) const {
+  KeyRun<float> keys(std::uint64_t begin, std::size_t count, int axis, float* buffer) const {
     reads += count;
-    return {records_[begin].x + axis, 4, false};
+    for (std::size_t i = 0; i < count; ++i) buffer[i] = records_[begin + i].x[axis];
+    return {buffer, 1, true};
   }
   float key(std::uint64_t place, int axis) const { return records_[place].x[axis]; }
   std::size_t list(std::uint64_t begin, std::size_t count, int axis, kernels::Relation relation, float pivot,

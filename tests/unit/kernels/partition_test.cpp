@@ -29,14 +29,16 @@ struct Run {
   std::vector<Key> memory;
   KeyRun<Key> run;
 
-  Run(Pattern pattern, std::size_t count, int components, bool padded, std::uint64_t seed) {
+  Run(Pattern pattern, std::size_t count, int components, bool may_be_padded, std::uint64_t seed) {
     CounterRandom random(seed);
+    const bool padded = may_be_padded || components == 4;
     const auto step = static_cast<std::size_t>(components);
     memory.resize(count * step + (padded ? kernels::run_padding : 0), std::numeric_limits<Key>::quiet_NaN());
     const std::size_t axis = seed % step;
     for (std::size_t i = 0; i < count * step; ++i)
       memory[i] = static_cast<Key>(i % step == axis ? value_of(pattern, i / step, count, random) : random.unit());
-    run = {memory.data() + axis, components, padded};
+    run = components == 3 ? KeyRun<Key>{memory.data(), 3, padded, static_cast<int>(axis)}
+                          : KeyRun<Key>{memory.data() + axis, components, padded};
   }
 };
 
@@ -111,6 +113,8 @@ TYPED_TEST(Partition, BoundsAreExact) {
       Key expected[6];
       ASSERT_TRUE(kernels::bounds_of_records(x.data(), count, found, found + 3));
       ASSERT_TRUE(kernels::reference_bounds_of_records(x.data(), count, expected, expected + 3));
+      for (int i = 0; i < 6; ++i) ASSERT_EQ(found[i], expected[i]) << target << " " << count;
+      kernels::bounds_of_finite_records(x.data(), count, found, found + 3);
       for (int i = 0; i < 6; ++i) ASSERT_EQ(found[i], expected[i]) << target << " " << count;
       for (const Key bad : {std::numeric_limits<Key>::quiet_NaN(), std::numeric_limits<Key>::infinity(),
                             -std::numeric_limits<Key>::infinity()})
