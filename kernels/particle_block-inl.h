@@ -40,6 +40,11 @@ class ParticleRun {
 
   HWY_INLINE std::size_t size() const { return size_; }
   HWY_INLINE std::uint64_t place(std::size_t i) const { return begin_ + i; }
+  // Bit i: particle first + i is drawn; of `count`, at most a vector of them.
+  HWY_INLINE std::uint32_t Drawn(std::size_t first, std::size_t count) const {
+    if (HWY_LIKELY(tree_.selected.all())) return ~std::uint32_t{0} >> (32 - count);
+    return static_cast<std::uint32_t>(tree_.selected.bits(begin_ + first, count));
+  }
 
   // The centres of particles first .. first + count, at most a vector of them.
   template <class D, class V>
@@ -76,13 +81,14 @@ class ParticleRun {
   std::size_t size_;
 };
 
-// A few particles from here and there.
+// A few particles from here and there, all of them drawn.
 class ParticlePick {
  public:
-  static constexpr std::size_t most = 7;
+  static constexpr std::size_t most = 16;
 
   HWY_INLINE std::size_t size() const { return size_; }
   HWY_INLINE std::uint64_t place(std::size_t i) const { return places_[i]; }
+  HWY_INLINE std::uint32_t Drawn(std::size_t, std::size_t count) const { return ~std::uint32_t{0} >> (32 - count); }
   HWY_INLINE void clear() { size_ = 0; }
   HWY_INLINE void add(std::uint64_t place, const float centre[3]) {
     places_[size_] = place;
@@ -98,10 +104,27 @@ class ParticlePick {
   }
 
  private:
-  HWY_ALIGN float centre_[3][16] = {};
+  HWY_ALIGN float centre_[3][most] = {};
   std::uint64_t places_[most];
   std::size_t size_ = 0;
 };
+
+// Under a filter: puts what is drawn of a run into `pick`, where that makes fewer vectors to test. False: it does not.
+template <class Positions>
+HWY_INLINE bool PickDrawn(const PkdTree& tree, const Positions& positions, std::uint64_t begin, std::uint64_t end,
+                          ParticlePick& pick) {
+  const hn::CappedTag<float, 16> d;
+  if (end <= begin + hn::Lanes(d) || end > begin + 64) return false;
+  std::uint64_t drawn = tree.selected.bits(begin, end - begin);
+  if (hwy::PopCount(drawn) > hn::Lanes(d)) return false;
+  for (; drawn != 0; drawn &= drawn - 1) {
+    const std::uint64_t place = begin + hwy::Num0BitsBelowLS1Bit_Nonzero64(drawn);
+    float centre[3];
+    positions.centre_f32(place, centre);
+    pick.add(place, centre);
+  }
+  return true;
+}
 
 // The tests. Of a PkdTree they know the radii.
 class ParticleTests {
@@ -130,6 +153,8 @@ class ParticleTests {
     const std::size_t lanes = hn::Lanes(d);
     for (std::size_t first = 0; first < particles.size(); first += lanes) {
       const std::size_t count = std::min(particles.size() - first, lanes);
+      const std::uint32_t drawn = particles.Drawn(first, count);
+      if (HWY_UNLIKELY(drawn == 0)) continue;
       V x, y, z;
       particles.Load(d, first, count, x, y, z);
       V r2 = hn::Set(d, radius2_);
@@ -146,7 +171,6 @@ class ParticleTests {
         r2 = hn::Load(d, radii2[0]);
         inner2 = hn::Load(d, radii2[1]);
       }
-      const std::uint32_t valid = ~std::uint32_t{0} >> (32 - count);
       for (std::size_t i = 0; i < list_size; ++i) {
         const auto& ray = rays[list[i]];
         const auto [b, distance2] =
@@ -161,7 +185,7 @@ class ParticleTests {
         const V shrink = hn::Set(d, shrink_);
         const V enter = hn::Sub(b, s);
         const auto in_time = hn::And(hn::Le(enter, t_high), hn::Ge(hn::Add(b, s), t_low));
-        std::uint32_t possible = MaskBits(d, hn::And(close, in_time)) & valid;
+        std::uint32_t possible = MaskBits(d, hn::And(close, in_time)) & drawn;
         std::uint32_t certain =
             possible & MaskBits(d, hn::And(hn::Le(distance2, inner2), hn::And(hn::Gt(enter, hn::Add(t_low, shrink)),
                                                                               hn::Lt(b, hn::Sub(t_high, shrink)))));
@@ -184,6 +208,8 @@ class ParticleTests {
     const std::size_t lanes = hn::Lanes(d);
     for (std::size_t first = 0; first < particles.size(); first += lanes) {
       const std::size_t count = std::min(particles.size() - first, lanes);
+      const std::uint32_t drawn = particles.Drawn(first, count);
+      if (HWY_UNLIKELY(drawn == 0)) continue;
       V x, y, z;
       particles.Load(d, first, count, x, y, z);
       V r = hn::Set(d, radius_);
@@ -204,8 +230,7 @@ class ParticleTests {
       const V reach = hn::MulAdd(hn::Set(d, beam.growth), t, wide);
       const auto meets =
           hn::And(hn::Le(distance2, hn::Mul(reach, reach)), hn::Le(hn::Sub(b, reach), hn::Set(d, latest)));
-      std::uint32_t bits = MaskBits(d, meets) & ~std::uint32_t{0} >> (32 - count);
-      for (; bits != 0; bits &= bits - 1) {
+      for (std::uint32_t bits = MaskBits(d, meets) & drawn; bits != 0; bits &= bits - 1) {
         const auto i = static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(bits));
         visit(particles.place(first + i), uniform_ ? radius_ : radii[i]);
       }

@@ -61,13 +61,14 @@ class PkdNodes {
   };
 
   // `longest`: leaves hold at most so many particles. `few_for_all`: of equal spheres at one point two may stand for
-  // all, the first of which is the one to be shown (the second: a ray may start on the first).
+  // all, the first of which is the one to be shown (the second: a ray may start on the first); not under a filter,
+  // which may leave out just these.
   PkdNodes(const PkdTree& tree, const Positions& positions, const TreeMargin& margin, std::uint64_t longest,
            bool few_for_all)
       : tree_(tree),
         positions_(positions),
         wide_(static_cast<float>((tree.radius_max + margin.value) * (1.0 + 4.0 * f32_unit))),
-        few_for_all_(few_for_all && tree.radius.kind == RadiusView::Kind::uniform) {
+        few_for_all_(few_for_all && tree.radius.kind == RadiusView::Kind::uniform && tree.selected.all()) {
     unsigned depth = 1;
     while (tree.count >> depth > longest) ++depth;
     levels_ = (depth + 2) / 3;
@@ -115,6 +116,7 @@ class PkdNodes {
       begins[k] = part.begin;
       node.filled |= part.span > 1 ? 1u << k : 0u;
     }
+    if (HWY_UNLIKELY(!tree_.selected.all())) DropUndrawn(tree_, node);
     for (std::size_t i = 0; i < 4; i += hn::Lanes(d)) {
       hn::Store(hn::Load(d, place.box.lower + i), d, node.lower[1] + i);
       hn::Store(hn::Load(d, place.box.upper + i), d, node.upper[1] + i);
@@ -145,7 +147,7 @@ class PkdNodes {
       }
       float centre[3];
       positions_.centre_f32(mid, centre);
-      inner.add(mid, centre);
+      if (tree_.selected.has(mid)) inner.add(mid, centre);
     }
     node.flip = child_flip(axes, octant, bits);
     MakePlanes(node, octant, planes);
@@ -165,6 +167,13 @@ class PkdNodes {
   }
 
  private:
+  // Children of which the filter has left nothing.
+  static HWY_NOINLINE void DropUndrawn(const PkdTree& tree, Node& node) {
+    for (unsigned k = 0; k < 1u << node.bits; ++k) {
+      const TreeletRun part = child_run(node.run, node.bits, k);
+      if (part.span > 1 && !tree.selected.any(part.begin, part.begin + part.span - 1)) node.filled &= ~(1u << k);
+    }
+  }
   static bool IsPoint(const Box& box) {
     return box.lower[0] == box.upper[0] && box.lower[1] == box.upper[1] && box.lower[2] == box.upper[2];
   }

@@ -215,6 +215,7 @@ class StreamPackets {
   }
 
   HWY_INLINE void Visit(std::uint64_t begin, std::uint64_t end, const std::uint32_t* list, std::size_t count) {
+    if (HWY_UNLIKELY(!tree_.selected.all()) && VisitFew(begin, end, list, count)) return;
     Visit(ParticleRun<Positions>(tree_, positions_, begin, end), list, count);
   }
   HWY_INLINE void VisitPick(const ParticlePick& pick, const std::uint32_t* list, std::size_t count) {
@@ -225,6 +226,14 @@ class StreamPackets {
   using D = hn::CappedTag<float, size>;
   using V = hn::Vec<D>;
   static constexpr std::uint64_t most_noted = std::uint64_t{1} << 32;
+
+  // Not inlined: without a filter it is never called.
+  HWY_NOINLINE bool VisitFew(std::uint64_t begin, std::uint64_t end, const std::uint32_t* list, std::size_t count) {
+    ParticlePick pick;
+    if (!PickDrawn(tree_, positions_, begin, end, pick)) return false;
+    Visit(pick, list, count);
+    return true;
+  }
 
   template <class Particles>
   HWY_INLINE void Visit(const Particles& particles, const std::uint32_t* list, std::size_t count) {

@@ -52,6 +52,7 @@ class StreamRays {
   }
 
   HWY_INLINE void Visit(std::uint64_t begin, std::uint64_t end, const std::uint32_t* list, std::size_t count) {
+    if (HWY_UNLIKELY(!tree_.selected.all()) && VisitFew(begin, end, list, count)) return;
     Visit(ParticleRun<Positions>(tree_, positions_, begin, end), list, count);
   }
   HWY_INLINE void VisitPick(const ParticlePick& pick, const std::uint32_t* list, std::size_t count) {
@@ -59,6 +60,14 @@ class StreamRays {
   }
 
  private:
+  // Not inlined: without a filter it is never called.
+  HWY_NOINLINE bool VisitFew(std::uint64_t begin, std::uint64_t end, const std::uint32_t* list, std::size_t count) {
+    ParticlePick pick;
+    if (!PickDrawn(tree_, positions_, begin, end, pick)) return false;
+    Visit(pick, list, count);
+    return true;
+  }
+
   template <class Particles>
   HWY_INLINE void Visit(const Particles& particles, const std::uint32_t* list, std::size_t count) {
     tests_.VisitTogether(particles, rays_.get(), list, count,
