@@ -108,6 +108,7 @@ void Particles::release() {
   moved_.clear();
   tree_ = {};
   treelets_ = {};
+  bound_filter_.reset();
 }
 
 void Particles::build(Budget& budget) {
@@ -124,8 +125,7 @@ void Particles::build(Budget& budget) {
     tree_.radius.uniform = automatic_radius(scan, 1.0 / arrays.position_scale) * arrays.radius_scale;
     scan.radius_max = tree_.radius.uniform;
   }
-  std::copy_n(scan.lower, 3, lower_);
-  std::copy_n(scan.upper, 3, upper_);
+  all_ = scan;
   if (!is_good_root(root_, scan)) root_ = root_around(scan);
   std::copy_n(root_.lower, 3, tree_.lower);
   std::copy_n(root_.upper, 3, tree_.upper);
@@ -150,6 +150,7 @@ void Particles::build(Budget& budget) {
       build_copy(budget);
       break;
   }
+  apply_filter(budget);
   add_treelets(budget);
   built_ = true;
 }
@@ -346,10 +347,10 @@ void Particles::bounds(double lower[3], double upper[3]) const {
   for (int c = 0; c < 3; ++c) {
     lower[c] = infinity;
     upper[c] = -infinity;
-    if (drawn_count() == 0) continue;
+    if (shown_count() == 0) continue;
     const double scale = arrays_->position_scale;
-    lower[c] = arrays_->position_origin[c] + (lower_[c] - tree_.radius_max) * scale;
-    upper[c] = arrays_->position_origin[c] + (upper_[c] + tree_.radius_max) * scale;
+    lower[c] = arrays_->position_origin[c] + (shown_.lower[c] - shown_.radius_max) * scale;
+    upper[c] = arrays_->position_origin[c] + (shown_.upper[c] + shown_.radius_max) * scale;
   }
 }
 
