@@ -60,9 +60,9 @@ class PkdNodes {
     HWY_ALIGN Key upper[2 * node_fanout][4];
   };
 
-  // `longest`: leaves hold at most so many particles. `few_for_all`: of equal spheres at one point two may stand for
-  // all, the first of which is the one to be shown (the second: a ray may start on the first); not under a filter,
-  // which may leave out just these.
+  // `longest`: leaves hold at most so many particles, or about as many that are drawn. `few_for_all`: of equal spheres
+  // at one point two may stand for all, the first of which is the one to be shown (the second: a ray may start on the
+  // first); not under a filter, which may leave out just these.
   PkdNodes(const PkdTree& tree, const Positions& positions, const TreeMargin& margin, std::uint64_t longest,
            bool few_for_all)
       : tree_(tree),
@@ -70,7 +70,7 @@ class PkdNodes {
         wide_(static_cast<float>((tree.radius_max + margin.value) * (1.0 + 4.0 * f32_unit))),
         few_for_all_(few_for_all && tree.radius.kind == RadiusView::Kind::uniform && tree.selected.all()) {
     unsigned depth = 1;
-    while (tree.count >> depth > longest) ++depth;
+    while (tree.count >> depth > longest << tree.selected.thinning) ++depth;
     levels_ = (depth + 2) / 3;
     root_bits_ = depth - 3 * (levels_ - 1);
   }
@@ -116,7 +116,6 @@ class PkdNodes {
       begins[k] = part.begin;
       node.filled |= part.span > 1 ? 1u << k : 0u;
     }
-    if (HWY_UNLIKELY(!tree_.selected.all())) DropUndrawn(tree_, node);
     for (std::size_t i = 0; i < 4; i += hn::Lanes(d)) {
       hn::Store(hn::Load(d, place.box.lower + i), d, node.lower[1] + i);
       hn::Store(hn::Load(d, place.box.upper + i), d, node.upper[1] + i);
@@ -147,8 +146,9 @@ class PkdNodes {
       }
       float centre[3];
       positions_.centre_f32(mid, centre);
-      if (tree_.selected.has(mid)) inner.add(mid, centre);
+      inner.add(mid, centre);
     }
+    if (HWY_UNLIKELY(!tree_.selected.all())) DropUndrawn(tree_.selected, node, inner);
     node.flip = child_flip(axes, octant, bits);
     MakePlanes(node, octant, planes);
   }
@@ -167,11 +167,12 @@ class PkdNodes {
   }
 
  private:
-  // Children of which the filter has left nothing.
-  static HWY_NOINLINE void DropUndrawn(const PkdTree& tree, Node& node) {
+  // Children of which the filter has left nothing, and splits that it has left out.
+  static HWY_NOINLINE void DropUndrawn(const SelectedPlaces& selected, Node& node, ParticlePick& inner) {
+    inner.KeepDrawn(selected);
     for (unsigned k = 0; k < 1u << node.bits; ++k) {
       const TreeletRun part = child_run(node.run, node.bits, k);
-      if (part.span > 1 && !tree.selected.any(part.begin, part.begin + part.span - 1)) node.filled &= ~(1u << k);
+      if (part.span > 1 && !selected.any(part.begin, part.begin + part.span - 1)) node.filled &= ~(1u << k);
     }
   }
   static bool IsPoint(const Box& box) {

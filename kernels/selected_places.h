@@ -12,6 +12,9 @@ struct SelectedPlaces {
 
   const std::uint64_t* level[most_levels] = {};  // bits of places, of words of these, ...; the last is a single word
 
+  // Of runs that have any, a place in 2^thinning is drawn, or more: leaves may be so much longer.
+  unsigned thinning = 0;
+
   static std::uint64_t words(std::uint64_t bits) { return (bits + 63) / 64; }
 
   // No filter: every place is drawn.
