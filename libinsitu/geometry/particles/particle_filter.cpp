@@ -1,7 +1,6 @@
-// What a filter does to a set of particles: of the tree it leaves everything but bits and the boxes of treelets alone.
+// What a filter does to a set of particles. The tree stays as it is; bits, treelets and copies of few particles do not.
 #include "core/error.h"
 #include "geometry/particles/particles.h"
-#include "geometry/pkd/treelet_build.h"
 
 namespace insitu {
 
@@ -21,6 +20,8 @@ void Particles::check_filter(const Filter& filter) const {
 
 void Particles::apply_filter(Budget& budget) {
   tree_.selected = {};
+  tree_.copies = {};
+  copies_.clear();
   bound_filter_.reset();
   shown_ = all_;
   if (!filter_) return selection_.clear();
@@ -34,9 +35,17 @@ void Particles::apply_filter(Budget& budget) {
   shown_ = selection_.found();
 }
 
+void Particles::add_copies(Budget& budget, std::uint64_t room) {
+  if (tree_.selected.thinning == 0) return;
+  const std::uint64_t bytes = ParticleCopies::bytes_for(tree_.count, shown_.drawn);
+  if (bytes == 0 || bytes > room) return;
+  copies_.build(budget, tree_, shown_.drawn);
+  tree_.copies = copies_.view();
+}
+
 void Particles::select(Budget& budget) {
   apply_filter(budget);
-  if (treelets_.exist()) build_treelets(tree_, treelets_, treelet_nodes_.data());
+  add_treelets(budget);
 }
 
 }  // namespace insitu

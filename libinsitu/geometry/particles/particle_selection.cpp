@@ -124,6 +124,16 @@ void ParticleSelection::build(Budget& budget, const PkdTree& tree, const BoundFi
     }
   }
   for (unsigned l = 0; l < levels; ++l) places_.level[l] = words + begin[l];
+  places_.thinning = thinning_of(tree.count);
+}
+
+// So that runs of 64 << thinning places have 64 that are drawn, or half as many.
+unsigned ParticleSelection::thinning_of(std::uint64_t count) const {
+  std::uint64_t blocks = 0;
+  for (std::uint64_t k = 0; k < SelectedPlaces::words(count); ++k) blocks += places_.level[0][k] != 0 ? 1 : 0;
+  unsigned thinning = 0;
+  while (blocks != 0 && found_.drawn << (thinning + 1) <= FilterBlock::most * blocks) ++thinning;
+  return thinning;
 }
 
 void ParticleSelection::clear() {

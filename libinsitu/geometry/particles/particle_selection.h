@@ -20,6 +20,8 @@ class ParticleSelection {
   std::uint64_t bytes() const { return words_.bytes(); }
 
  private:
+  unsigned thinning_of(std::uint64_t count) const;
+
   BudgetVector<std::uint64_t> words_;  // all levels, one after another
   kernels::SelectedPlaces places_;
   ScanResult found_ = nothing_found();

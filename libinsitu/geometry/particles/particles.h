@@ -11,6 +11,7 @@
 #include "geometry/array_view.h"
 #include "geometry/filter/filter.h"
 #include "geometry/geometry.h"
+#include "geometry/particles/particle_copies.h"
 #include "geometry/particles/particle_selection.h"
 #include "geometry/pkd/pkd_build.h"
 #include "kernels/pkd_tree.h"
@@ -126,6 +127,8 @@ class Particles : public Geometry {
   void plan_treelets(const Budget& budget);
   void add_treelets(Budget& budget);
   void apply_filter(Budget& budget);
+  // Of what a filter leaves, where that is little and fits into `room` bytes.
+  void add_copies(Budget& budget, std::uint64_t room);
   std::uint64_t treelet_room(const Budget& budget) const;
   void trace_first_hits(const kernels::Ray* rays, kernels::Hit* hits, std::size_t count) const;
   void trace_any_hits(const kernels::Ray* rays, std::uint8_t* occluded, std::size_t count) const;
@@ -158,6 +161,7 @@ class Particles : public Geometry {
   std::shared_ptr<const Filter> filter_;
   std::optional<BoundFilter> bound_filter_;  // while its selection is in force
   ParticleSelection selection_;
+  ParticleCopies copies_;
 };
 
 // Smallest and largest finite value; component as in insitu_style. Call within the workers.

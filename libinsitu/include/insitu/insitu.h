@@ -215,7 +215,8 @@ typedef struct insitu_particles_desc {
   /* Most memory for treelets, as a part of the bytes of the positions: 0 = none, 0.15 = for 1.8 bytes per particle in
    * f32. Treelets are boxes around runs of some 16 particles: rays take half to three quarters of the time, and a
    * few large particles among many small ones cost little. Fewer, or none, are made when the share is too small or
-   * max_extra_bytes leaves no room; insitu_stats says what was made. */
+   * max_extra_bytes leaves no room; insitu_stats says what was made. Under a filter that leaves few particles of a run
+   * the treelets are fewer, and the share also holds copies of their centres, 16 bytes each, if it can. */
   double treelet_share;
 } insitu_particles_desc;
 

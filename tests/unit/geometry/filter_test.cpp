@@ -113,13 +113,17 @@ TEST(ParticleFilter, IsTheParticlesThatAreLeft) {
           particles.build(budget);
           expect_as_alone(particles, given, given.up_to(0.3), each_radius);
           // Changed, opened and closed in the same tree.
-          const kernels::TreeletNode* const nodes = particles.treelets().nodes;
+          const PkdBuilt::How how = particles.how_built().how;
           for (const double high : {0.9, 0.05, -1.0, 2.0, 0.5}) {
             particles.set_filter(between("value", -infinity, high));
             particles.select(budget);
             expect_as_alone(particles, given, given.up_to(high), each_radius);
+            if (count == 5000) {
+              EXPECT_EQ(particles.tree().copies.exist(), share > 0.0 && high > 0.0 && high < 0.5) << high;
+              EXPECT_EQ(particles.treelets().exist(), share > 0.0);
+            }
           }
-          EXPECT_EQ(particles.treelets().nodes, nodes);
+          EXPECT_EQ(particles.how_built().how, how);
           particles.set_filter(nullptr);
           particles.select(budget);
           expect_as_alone(particles, given, given.up_to(infinity), each_radius);
@@ -152,6 +156,26 @@ TEST(ParticleFilter, ItsBitsAreCountedAndGivenBack) {
   } catch (const Error& error) {
     EXPECT_EQ(error.status(), INSITU_ERROR_OVER_BUDGET);
     EXPECT_NE(std::string(error.what()).find("filter"), std::string::npos);
+  }
+}
+
+// Treelets and copies of what is left share what was granted for treelets; without a grant there are none.
+TEST(ParticleFilter, CopiesStayWithinTheShareOfTreelets) {
+  for (const double share : {0.0, 0.001, 0.01, 0.03, 0.1, 0.3}) {
+    Cloud cloud(20000);
+    Budget budget(0);
+    Particles particles("p", ParticleOrder::permute, false);
+    particles.bind(cloud.arrays(share, false));
+    particles.build(budget);
+    bool copied = false;
+    for (const double high : {1.0, 0.4, 0.1, 0.02, 0.9, 0.0}) {
+      particles.set_filter(between("value", 0.0, high));
+      particles.select(budget);
+      EXPECT_LE(static_cast<double>(budget.owned()), share * 24.0 * 20000.0 + 20000.0 / 8 + 20000.0 / 400 + 64.0);
+      EXPECT_LE(particles.particles_per_treelet(), share >= 0.1 && high == 1.0 ? 16.0 : 1e9);
+      copied = copied || particles.tree().copies.exist();
+    }
+    EXPECT_EQ(copied, share >= 0.03) << share;
   }
 }
 
