@@ -245,13 +245,13 @@ Scene replicas() {
 // A lattice with bonds whose nearest corner is cut away, but for the balls around the middle: not in a box, or of a
 // small value.
 Scene filtered() {
-  Scene scene = make_scene("filtered", {3.0, 2.875, 3.0}, {0.625, 0.5, 1.0}, 14.5);
+  Scene scene = make_scene("filtered", {2.0, 1.875, 2.0}, {0.625, 0.5, 1.0}, 12.5);
   Set set;
-  for (int i = 0; i < 343; ++i) {
-    const int x = i % 7;
-    const int y = i / 7 % 7;
-    const int z = i / 49;
-    set.add(x, y, z, 0.3125, (x - 3) * (x - 3) + (y - 3) * (y - 3) + (z - 3) * (z - 3), 0);
+  for (int i = 0; i < 125; ++i) {
+    const int x = i % 5;
+    const int y = i / 5 % 5;
+    const int z = i / 25;
+    set.add(x, y, z, 0.3125, (x - 2) * (x - 2) + (y - 2) * (y - 2) + (z - 2) * (z - 2), 0);
   }
   set.color_by = "value";
   set.colormap = "coolwarm";
@@ -260,13 +260,13 @@ Scene filtered() {
   insitu_filter_term_init(&corner);
   corner.kind = INSITU_FILTER_BOX;
   corner.flags = INSITU_FILTER_NOT;
-  for (double& low : corner.lower) low = 3.0;
-  for (double& high : corner.upper) high = 6.0;
+  for (double& low : corner.lower) low = 2.0;
+  for (double& high : corner.upper) high = 4.0;
   insitu_filter_term core;
   insitu_filter_term_init(&core);
   core.kind = INSITU_FILTER_RANGE;
   core.attribute = "value";
-  core.range[1] = 3.0;
+  core.range[1] = 1.0;
   core.alternative = 1;
   scene.glyphs.filter = {corner, core};
   scene.glyphs.bonds = 1.125;
