@@ -40,6 +40,11 @@ class ParticleRun {
 
   HWY_INLINE std::size_t size() const { return size_; }
   HWY_INLINE std::uint64_t place(std::size_t i) const { return begin_ + i; }
+  // Bit i: particle first + i is drawn; of `count`, at most a vector of them.
+  static constexpr bool is_filtered = false;
+  HWY_INLINE std::uint32_t Drawn(std::size_t, std::size_t count) const { return ~std::uint32_t{0} >> (32 - count); }
+
+  HWY_INLINE void Centre(std::size_t i, float out[3]) const { positions_.centre_f32(begin_ + i, out); }
 
   // The centres of particles first .. first + count, at most a vector of them.
   template <class D, class V>
@@ -69,20 +74,47 @@ class ParticleRun {
     z = hn::Load(d, staged[2]);
   }
 
- private:
+ protected:
   const PkdTree& tree_;
   const Positions& positions_;
   std::uint64_t begin_;
   std::size_t size_;
 };
 
+// The same under a filter.
+template <class Positions>
+class FilteredRun : public ParticleRun<Positions> {
+ public:
+  // An inherited constructor would not be compiled for the target.
+  HWY_INLINE FilteredRun(const PkdTree& tree, const Positions& positions, std::uint64_t begin, std::uint64_t end)
+      : ParticleRun<Positions>(tree, positions, begin, end) {}
+  static constexpr bool is_filtered = true;
+  HWY_INLINE std::uint32_t Drawn(std::size_t first, std::size_t count) const {
+    return static_cast<std::uint32_t>(this->tree_.selected.bits(this->begin_ + first, count));
+  }
+};
+
 // A few particles from here and there.
 class ParticlePick {
  public:
-  static constexpr std::size_t most = 7;
+  static constexpr std::size_t most = 16;
 
   HWY_INLINE std::size_t size() const { return size_; }
   HWY_INLINE std::uint64_t place(std::size_t i) const { return places_[i]; }
+  static constexpr bool is_filtered = false;
+  HWY_INLINE std::uint32_t Drawn(std::size_t, std::size_t count) const { return ~std::uint32_t{0} >> (32 - count); }
+  HWY_INLINE void Centre(std::size_t i, float out[3]) const {
+    for (std::size_t c = 0; c < 3; ++c) out[c] = centre_[c][i];
+  }
+  HWY_INLINE void KeepDrawn(const SelectedPlaces& selected) {
+    const std::size_t size = size_;
+    size_ = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+      float centre[3];
+      Centre(i, centre);
+      if (selected.has(places_[i])) add(places_[i], centre);
+    }
+  }
   HWY_INLINE void clear() { size_ = 0; }
   HWY_INLINE void add(std::uint64_t place, const float centre[3]) {
     places_[size_] = place;
@@ -98,10 +130,107 @@ class ParticlePick {
   }
 
  private:
-  HWY_ALIGN float centre_[3][16] = {};
+  HWY_ALIGN float centre_[3][most] = {};
   std::uint64_t places_[most];
   std::size_t size_ = 0;
 };
+
+// Under a filter: what is drawn of a run, by bits.
+class DrawnPlaces {
+ public:
+  HWY_INLINE DrawnPlaces(const PkdTree& tree, std::uint64_t begin, std::uint64_t end)
+      : selected_(tree.selected), next_(begin), end_(end) {}
+
+  // Whether a vector of particles here and there, put together, is less to do than the run as it is.
+  HWY_INLINE bool AreFew(std::size_t lanes) const {
+    if (end_ <= next_ + lanes) return false;
+    std::size_t drawn = 0;
+    for (std::uint64_t begin = next_; begin < end_; begin += 64) drawn += hwy::PopCount(Word(begin));
+    return 4 * drawn <= end_ - next_;
+  }
+  template <class Action>
+  HWY_INLINE void Each(const Action& action) const {
+    for (std::uint64_t begin = next_; begin < end_; begin += 64)
+      for (std::uint64_t left = Word(begin); left != 0; left &= left - 1)
+        action(begin + hwy::Num0BitsBelowLS1Bit_Nonzero64(left));
+  }
+  // Puts the next ones into `pick`, at most `most`. False: there are no more.
+  template <class Positions>
+  HWY_INLINE bool Take(const Positions& positions, std::size_t most, ParticlePick& pick) {
+    pick.clear();
+    while (next_ < end_) {
+      std::uint64_t left = Word(next_);
+      for (; left != 0 && pick.size() < most; left &= left - 1) {
+        const std::uint64_t place = next_ + hwy::Num0BitsBelowLS1Bit_Nonzero64(left);
+        float centre[3];
+        positions.centre_f32(place, centre);
+        pick.add(place, centre);
+      }
+      if (left != 0) {
+        next_ += hwy::Num0BitsBelowLS1Bit_Nonzero64(left);
+        return true;
+      }
+      next_ += 64;
+    }
+    return pick.size() != 0;
+  }
+
+ private:
+  HWY_INLINE std::uint64_t Word(std::uint64_t begin) const {
+    return selected_.bits(begin, std::min<std::uint64_t>(64, end_ - begin));
+  }
+
+  const SelectedPlaces& selected_;
+  std::uint64_t next_;
+  std::uint64_t end_;
+};
+
+// The same from the copies of their centres.
+class CopiedRun {
+ public:
+  HWY_INLINE CopiedRun(const PkdTree& tree, std::uint64_t begin, std::uint64_t end)
+      : copies_(tree.copies),
+        begin_(copies_.rank(tree.selected, begin)),
+        size_(static_cast<std::size_t>(copies_.rank(tree.selected, end) - begin_)) {}
+
+  HWY_INLINE std::size_t size() const { return size_; }
+  HWY_INLINE std::uint64_t place(std::size_t i) const { return copies_.place_of[begin_ + i]; }
+  static constexpr bool is_filtered = false;
+  HWY_INLINE std::uint32_t Drawn(std::size_t, std::size_t count) const { return ~std::uint32_t{0} >> (32 - count); }
+  HWY_INLINE void Centre(std::size_t i, float out[3]) const {
+    for (std::size_t c = 0; c < 3; ++c) out[c] = copies_.centres[3 * (begin_ + i) + c];
+  }
+  template <class D, class V>
+  HWY_INLINE void Load(D d, std::size_t first, std::size_t, V& x, V& y, V& z) const {
+    hn::LoadInterleaved3(d, copies_.centres + 3 * (begin_ + first), x, y, z);
+  }
+  HWY_INLINE void Prefetch() const {
+    constexpr std::size_t per_line = 5;
+    for (std::size_t i = 0; i < size_; i += per_line) __builtin_prefetch(copies_.centres + 3 * (begin_ + i));
+    __builtin_prefetch(copies_.place_of + begin_);
+    if (size_ > 0) __builtin_prefetch(copies_.place_of + begin_ + size_ - 1);
+  }
+
+ private:
+  const SelectedCopies& copies_;
+  std::uint64_t begin_;
+  std::size_t size_;
+};
+
+// What a walk under a filter will read of a leaf, as PrefetchRun and PrefetchRunBehind without one.
+template <class Positions>
+HWY_NOINLINE void PrefetchDrawn(const PkdTree& tree, const Positions& positions, std::uint64_t begin,
+                                std::uint64_t end) {
+  if (tree.copies.exist()) return CopiedRun(tree, begin, end).Prefetch();
+  DrawnPlaces(tree, begin, end).Each([&](std::uint64_t place) HWY_ATTR { positions.prefetch(place); });
+}
+template <class Positions>
+HWY_NOINLINE void PrefetchDrawnBehind(const PkdTree& tree, const Positions& positions, std::uint64_t begin,
+                                      std::uint64_t end) {
+  if constexpr (Positions::is_indirect)
+    if (!tree.copies.exist())
+      DrawnPlaces(tree, begin, end).Each([&](std::uint64_t place) HWY_ATTR { positions.prefetch_behind(place); });
+}
 
 // The tests. Of a PkdTree they know the radii.
 class ParticleTests {
@@ -130,6 +259,8 @@ class ParticleTests {
     const std::size_t lanes = hn::Lanes(d);
     for (std::size_t first = 0; first < particles.size(); first += lanes) {
       const std::size_t count = std::min(particles.size() - first, lanes);
+      const std::uint32_t drawn = particles.Drawn(first, count);
+      if (Particles::is_filtered && drawn == 0) continue;
       V x, y, z;
       particles.Load(d, first, count, x, y, z);
       V r2 = hn::Set(d, radius2_);
@@ -146,7 +277,6 @@ class ParticleTests {
         r2 = hn::Load(d, radii2[0]);
         inner2 = hn::Load(d, radii2[1]);
       }
-      const std::uint32_t valid = ~std::uint32_t{0} >> (32 - count);
       for (std::size_t i = 0; i < list_size; ++i) {
         const auto& ray = rays[list[i]];
         const auto [b, distance2] =
@@ -161,7 +291,7 @@ class ParticleTests {
         const V shrink = hn::Set(d, shrink_);
         const V enter = hn::Sub(b, s);
         const auto in_time = hn::And(hn::Le(enter, t_high), hn::Ge(hn::Add(b, s), t_low));
-        std::uint32_t possible = MaskBits(d, hn::And(close, in_time)) & valid;
+        std::uint32_t possible = MaskBits(d, hn::And(close, in_time)) & drawn;
         std::uint32_t certain =
             possible & MaskBits(d, hn::And(hn::Le(distance2, inner2), hn::And(hn::Gt(enter, hn::Add(t_low, shrink)),
                                                                               hn::Lt(b, hn::Sub(t_high, shrink)))));
@@ -175,7 +305,8 @@ class ParticleTests {
     }
   }
 
-  // Calls visit(place, radius with margin) for the particles that the beam can touch up to the distance `latest`.
+  // Calls visit(place, centre, radius with margin) for the particles that the beam can touch up to the distance
+  // `latest`.
   template <class Particles, class Beam, class VisitParticle>
   HWY_INLINE void VisitWithinBeam(const Particles& particles, const Beam& beam, float latest,
                                   const VisitParticle& visit) const {
@@ -184,6 +315,8 @@ class ParticleTests {
     const std::size_t lanes = hn::Lanes(d);
     for (std::size_t first = 0; first < particles.size(); first += lanes) {
       const std::size_t count = std::min(particles.size() - first, lanes);
+      const std::uint32_t drawn = particles.Drawn(first, count);
+      if (Particles::is_filtered && drawn == 0) continue;
       V x, y, z;
       particles.Load(d, first, count, x, y, z);
       V r = hn::Set(d, radius_);
@@ -204,10 +337,11 @@ class ParticleTests {
       const V reach = hn::MulAdd(hn::Set(d, beam.growth), t, wide);
       const auto meets =
           hn::And(hn::Le(distance2, hn::Mul(reach, reach)), hn::Le(hn::Sub(b, reach), hn::Set(d, latest)));
-      std::uint32_t bits = MaskBits(d, meets) & ~std::uint32_t{0} >> (32 - count);
-      for (; bits != 0; bits &= bits - 1) {
+      for (std::uint32_t bits = MaskBits(d, meets) & drawn; bits != 0; bits &= bits - 1) {
         const auto i = static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(bits));
-        visit(particles.place(first + i), uniform_ ? radius_ : radii[i]);
+        float centre[3];
+        particles.Centre(first + i, centre);
+        visit(particles.place(first + i), centre, uniform_ ? radius_ : radii[i]);
       }
     }
   }

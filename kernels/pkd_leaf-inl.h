@@ -124,6 +124,8 @@ HWY_INLINE bool VisitLeaf(const PkdTree& tree, const Positions& positions, std::
   using V = hn::Vec<decltype(d)>;
   const std::size_t lanes = hn::Lanes(d);
   const std::size_t count = static_cast<std::size_t>(end - begin);
+  const std::uint64_t drawn = tree.selected.all() ? ~std::uint64_t{0} : tree.selected.bits(begin, count);
+  if (drawn == 0) return false;
   const auto limit = [&]() HWY_ATTR {
     return hn::Set(d, static_cast<float>((visitor.t_limit() - frame.t_shift + frame.margin) * frame.scale));
   };
@@ -154,7 +156,8 @@ HWY_INLINE bool VisitLeaf(const PkdTree& tree, const Positions& positions, std::
     candidate = hn::And(candidate, hn::And(hn::Le(hn::Sub(b, s), high), hn::Ge(hn::Add(b, s), low)));
     if (valid < lanes) candidate = hn::And(candidate, hn::FirstN(d, valid));
     if (hn::AllFalse(d, candidate)) return false;
-    for (std::uint32_t bits = MaskBits(d, candidate); bits != 0; bits &= bits - 1) {
+    const auto drawn_here = static_cast<std::uint32_t>(drawn >> first);
+    for (std::uint32_t bits = MaskBits(d, candidate) & drawn_here; bits != 0; bits &= bits - 1) {
       const std::uint64_t place = begin + first + hwy::Num0BitsBelowLS1Bit_Nonzero32(bits);
       if (visitor.visit(tree, positions, place, ray)) return true;
     }

@@ -56,18 +56,19 @@ class PkdNodes {
     HWY_ALIGN Key upper[2 * node_fanout][4];
   };
 
-  // `longest`: leaves hold at most so many particles. `few_for_all`: of equal spheres at one point two may stand for
-  // all, the first of which is the one to be shown (the second: a ray may start on the first).
+  // `longest`: leaves hold at most so many particles, or about as many that are drawn. `few_for_all`: of equal spheres
+  // at one point two may stand for all, the first of which is the one to be shown (the second: a ray may start on the
+  // first); not under a filter, which may leave out just these.
   PkdNodes(const PkdTree& tree, const Positions& positions, const TreeMargin& margin, std::uint64_t longest,
            bool few_for_all)
       : tree_(tree),
         positions_(positions),
         wide_(static_cast<float>((tree.radius_max + margin.value) * (1.0 + 4.0 * f32_unit))),
-        few_for_all_(few_for_all && tree.radius.kind == RadiusView::Kind::uniform) {
+        few_for_all_(few_for_all && tree.radius.kind == RadiusView::Kind::uniform && tree.selected.all()) {
     unsigned depth = 1;
     // With one more place the levels would be shared out evenly: the smallest subtree has its share, rounded down, less
     // that place.
-    while (((tree.count + 1) >> depth) - 1 > longest) ++depth;
+    while (((tree.count + 1) >> depth) - 1 > longest << tree.selected.thinning) ++depth;
     levels_ = (depth + 2) / 3;
     root_bits_ = depth - 3 * (levels_ - 1);
   }
@@ -145,6 +146,7 @@ class PkdNodes {
       positions_.centre_f32(mid, centre);
       inner.add(mid, centre);
     }
+    if (HWY_UNLIKELY(!tree_.selected.all())) DropUndrawn(tree_.selected, node, inner);
     node.flip = child_flip(axes, octant, bits);
     MakePlanes(node, octant, planes);
   }
@@ -163,6 +165,14 @@ class PkdNodes {
   }
 
  private:
+  // Children of which the filter has left nothing, and splits that it has left out.
+  static HWY_NOINLINE void DropUndrawn(const SelectedPlaces& selected, Node& node, ParticlePick& inner) {
+    inner.KeepDrawn(selected);
+    for (unsigned k = 0; k < 1u << node.bits; ++k) {
+      const TreeletRun part = child_run(node.run, node.bits, k);
+      if (part.span > 1 && !selected.any(part.begin, part.begin + part.span - 1)) node.filled &= ~(1u << k);
+    }
+  }
   static bool IsPoint(const Box& box) {
     return box.lower[0] == box.upper[0] && box.lower[1] == box.upper[1] && box.lower[2] == box.upper[2];
   }

@@ -55,7 +55,7 @@ Hit reference_first_hit(const PkdTree& tree, const Ray& ray) {
   best.t = ray.t_max;
   for (std::uint64_t place = 0; place < tree.count; ++place) {
     const Item item = item_at(tree, place);
-    if (item.id == ray.exclude) continue;
+    if (item.id == ray.exclude || !tree.selected.has(place)) continue;
     const double t = sphere_first_hit(ray.origin, ray.direction, item.centre, item.radius, ray.t_min);
     if (t > best.t || t == std::numeric_limits<double>::infinity()) continue;
     if (t == best.t && best.found()) {
@@ -74,7 +74,7 @@ std::vector<Span> reference_all_hits(const PkdTree& tree, const Ray& ray) {
   std::vector<Span> spans;
   for (std::uint64_t place = 0; place < tree.count; ++place) {
     const Item item = item_at(tree, place);
-    if (item.id == ray.exclude) continue;
+    if (item.id == ray.exclude || !tree.selected.has(place)) continue;
     const SphereRoots roots = sphere_roots(ray.origin, ray.direction, item.centre, item.radius);
     if (roots.hit && roots.leave > ray.t_min && roots.enter <= ray.t_max)
       spans.push_back({roots.enter, roots.leave, item.id});

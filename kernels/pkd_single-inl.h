@@ -43,7 +43,7 @@ template <class Positions, class Visitor>
 HWY_INLINE bool VisitRun(const PkdTree& tree, const Positions& positions, const Subtree<typename Positions::Key>& run,
                          const Ray& ray, Visitor& visitor) {
   if (HWY_UNLIKELY(run.end - run.begin > pkd_leaf_size) && Visitor::one_of_coincident &&
-      tree.radius.kind == RadiusView::Kind::uniform && tree.item(run.begin) != ray.exclude)
+      tree.radius.kind == RadiusView::Kind::uniform && tree.selected.all() && tree.item(run.begin) != ray.exclude)
     return visitor.visit(tree, positions, run.begin, ray);  // equal spheres: the build puts the one to be shown first
   const RayFrame frame = FrameOfRun(tree, ray, run);
   for (std::uint64_t begin = run.begin; begin < run.end; begin += pkd_leaf_size)
@@ -61,6 +61,10 @@ HWY_INLINE bool TraverseSubtree(const PkdTree& tree, const Positions& positions,
   int height = 0;
   for (;;) {
     while (now.end - now.begin > pkd_leaf_size && !now.box.is_point()) {
+      if (!tree.selected.all() && !tree.selected.any(now.begin, now.end)) {
+        now.end = now.begin;
+        break;
+      }
       const int axis = now.box.split_axis();
       const std::uint64_t mid = now.begin + (now.end - now.begin) / 2;
       const Key plane = positions.key(mid, axis);
@@ -76,7 +80,7 @@ HWY_INLINE bool TraverseSubtree(const PkdTree& tree, const Positions& positions,
       bool go_lower = go_near == near_is_lower;  // when only one side is entered
       if (go_near && go_far) {
         // The ray crosses the widened plane within the subtree: the particle on the plane may be hit.
-        if (visitor.visit(tree, positions, mid, ray)) return true;
+        if (tree.selected.has(mid) && visitor.visit(tree, positions, mid, ray)) return true;
         Subtree<Key>& far = stack[height++];
         far = now;
         far.t_enter = std::max(now.t_enter, far_enter);

@@ -13,6 +13,8 @@
 #pragma once
 
 #include "kernels/ray.h"
+#include "kernels/selected_copies.h"
+#include "kernels/selected_places.h"
 #include "kernels/views.h"
 
 namespace insitu::kernels {
@@ -61,6 +63,8 @@ struct PkdTree {
   double radius_max = 0.0;
   std::uint64_t built_leaf = pkd_leaf_size;  // the build goes on to leaves of this size; never above pkd_leaf_size
   RadiusView radius;                         // by item
+  SelectedPlaces selected;                   // of the places below `count`, those that are drawn
+  SelectedCopies copies;                     // of these; or none
   PreferItem prefer = nullptr;
   const void* prefer_context = nullptr;
 

@@ -209,12 +209,17 @@ class StreamPackets {
     return met_by_rays;
   }
 
-  HWY_INLINE void Prefetch(std::uint64_t begin, std::uint64_t end) const { PrefetchRun(positions_, begin, end); }
+  HWY_INLINE void Prefetch(std::uint64_t begin, std::uint64_t end) const {
+    if (HWY_UNLIKELY(!tree_.selected.all())) return PrefetchDrawn(tree_, positions_, begin, end);
+    PrefetchRun(positions_, begin, end);
+  }
   HWY_INLINE void PrefetchBehind(std::uint64_t begin, std::uint64_t end) const {
+    if (HWY_UNLIKELY(!tree_.selected.all())) return PrefetchDrawnBehind(tree_, positions_, begin, end);
     PrefetchRunBehind(positions_, begin, end);
   }
 
   HWY_INLINE void Visit(std::uint64_t begin, std::uint64_t end, const std::uint32_t* list, std::size_t count) {
+    if (HWY_UNLIKELY(!tree_.selected.all())) return VisitFiltered(begin, end, list, count);
     Visit(ParticleRun<Positions>(tree_, positions_, begin, end), list, count);
   }
   HWY_INLINE void VisitPick(const ParticlePick& pick, const std::uint32_t* list, std::size_t count) {
@@ -226,15 +231,26 @@ class StreamPackets {
   using V = hn::Vec<D>;
   static constexpr std::uint64_t most_noted = std::uint64_t{1} << 32;
 
+  // Not inlined: without a filter it is never called.
+  HWY_NOINLINE void VisitFiltered(std::uint64_t begin, std::uint64_t end, const std::uint32_t* list,
+                                  std::size_t count) {
+    if (tree_.copies.exist()) return Visit(CopiedRun(tree_, begin, end), list, count);
+    const std::size_t lanes = hn::Lanes(hn::CappedTag<float, ParticleTests::most_lanes>());
+    DrawnPlaces drawn(tree_, begin, end);
+    if (!drawn.AreFew(lanes)) return Visit(FilteredRun<Positions>(tree_, positions_, begin, end), list, count);
+    ParticlePick pick;
+    while (drawn.Take(positions_, lanes, pick)) Visit(pick, list, count);
+  }
+
   template <class Particles>
   HWY_INLINE void Visit(const Particles& particles, const std::uint32_t* list, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
       RayBeam& beam = beams_[list[i]];
       RayPacket& packet = packets_[beam.packet];
       bool changed = false;
-      tests_.VisitWithinBeam(particles, beam, beam.latest, [&](std::uint64_t place, float radius) HWY_ATTR {
-        changed |= VisitParticle(packet, place, radius, beam.active);
-      });
+      tests_.VisitWithinBeam(particles, beam, beam.latest,
+                             [&](std::uint64_t place, const float centre[3], float radius)
+                                 HWY_ATTR { changed |= VisitParticle(packet, place, centre, radius, beam.active); });
       if (changed) UpdateLatest(beam);
     }
   }
@@ -317,12 +333,11 @@ class StreamPackets {
   // sphere is in truth: the near intersection moves by at least the change of the radius. That bounds the distance of a
   // hit from both sides. While one candidate of a ray is nearer than all others, bounds and all, it is only noted;
   // where bounds overlap, double arithmetic decides at once.
-  HWY_INLINE bool VisitParticle(RayPacket& packet, std::uint64_t place, float radius, std::uint32_t active) {
+  HWY_INLINE bool VisitParticle(RayPacket& packet, std::uint64_t place, const float centre[3], float radius,
+                                std::uint32_t active) {
     const D d;
     const hn::RebindToUnsigned<D> u;
     const std::size_t lanes = hn::Lanes(d);
-    float centre[3];
-    positions_.centre_f32(place, centre);
     const V r2 = hn::Set(d, radius * radius * (1.0f + 1e-6f));
     const float inner = std::max(radius - shrink_, 0.0f);
     const V inner2 = hn::Set(d, inner * inner * (1.0f - 1e-6f));
@@ -360,6 +375,7 @@ class StreamPackets {
                        packet.best_place + i);
       const std::uint32_t noted = MaskBits(d, wins) << i;
       packet.noted |= noted;
+      if (HWY_UNLIKELY(tree_.copies.exist()) && noted != 0) positions_.prefetch(place);  // confirmed at the end
       nearer = true;
       for (std::uint32_t open = MaskBits(d, possible) << i & ~noted; open != 0; open &= open - 1) {
         const std::size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(open);

@@ -46,12 +46,17 @@ class StreamRays {
     return planes.Meet(rays_[ray]);
   }
 
-  HWY_INLINE void Prefetch(std::uint64_t begin, std::uint64_t end) const { PrefetchRun(positions_, begin, end); }
+  HWY_INLINE void Prefetch(std::uint64_t begin, std::uint64_t end) const {
+    if (HWY_UNLIKELY(!tree_.selected.all())) return PrefetchDrawn(tree_, positions_, begin, end);
+    PrefetchRun(positions_, begin, end);
+  }
   HWY_INLINE void PrefetchBehind(std::uint64_t begin, std::uint64_t end) const {
+    if (HWY_UNLIKELY(!tree_.selected.all())) return PrefetchDrawnBehind(tree_, positions_, begin, end);
     PrefetchRunBehind(positions_, begin, end);
   }
 
   HWY_INLINE void Visit(std::uint64_t begin, std::uint64_t end, const std::uint32_t* list, std::size_t count) {
+    if (HWY_UNLIKELY(!tree_.selected.all())) return VisitFiltered(begin, end, list, count);
     Visit(ParticleRun<Positions>(tree_, positions_, begin, end), list, count);
   }
   HWY_INLINE void VisitPick(const ParticlePick& pick, const std::uint32_t* list, std::size_t count) {
@@ -59,6 +64,17 @@ class StreamRays {
   }
 
  private:
+  // Not inlined: without a filter it is never called.
+  HWY_NOINLINE void VisitFiltered(std::uint64_t begin, std::uint64_t end, const std::uint32_t* list,
+                                  std::size_t count) {
+    if (tree_.copies.exist()) return Visit(CopiedRun(tree_, begin, end), list, count);
+    const std::size_t lanes = hn::Lanes(hn::CappedTag<float, ParticleTests::most_lanes>());
+    DrawnPlaces drawn(tree_, begin, end);
+    if (!drawn.AreFew(lanes)) return Visit(FilteredRun<Positions>(tree_, positions_, begin, end), list, count);
+    ParticlePick pick;
+    while (drawn.Take(positions_, lanes, pick)) Visit(pick, list, count);
+  }
+
   template <class Particles>
   HWY_INLINE void Visit(const Particles& particles, const std::uint32_t* list, std::size_t count) {
     tests_.VisitTogether(particles, rays_.get(), list, count,

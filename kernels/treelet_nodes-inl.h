@@ -31,9 +31,11 @@ class TreeletNodes {
     Place place;
     std::uint32_t flip;
     unsigned bits;
+    std::uint32_t filled;
   };
 
-  TreeletNodes(const PkdTree& tree, const Treelets& treelets) : treelets_(treelets), places_(tree.count) {}
+  TreeletNodes(const PkdTree& tree, const Treelets& treelets)
+      : treelets_(treelets), places_(tree.count), is_filtered_(!tree.selected.all()) {}
 
   unsigned levels() const { return treelets_.levels; }
   Place Root() const { return {treelets_.root(), 0}; }
@@ -55,6 +57,7 @@ class TreeletNodes {
     out.place = place;
     out.bits = treelets_.bits_at(level);
     out.flip = child_flip(node.axes, octant, out.bits);
+    out.filled = HWY_UNLIKELY(is_filtered_) ? WithParticles(node) : (1u << (1u << out.bits)) - 1;
     for (std::size_t c = 0; c < 3; ++c) {
       const bool is_down = (octant >> c & 1) != 0;
       const std::uint8_t* const q_near = is_down ? node.upper[c] : node.lower[c];
@@ -69,16 +72,24 @@ class TreeletNodes {
       }
     }
   }
-  // Children that are there. A box without particles is met by no ray, but perhaps by a wide beam.
-  std::uint32_t Filled(const Node& node) const { return (1u << (1u << node.bits)) - 1; }
+  // Children that are there. A box without particles is met by no ray, but perhaps by a wide beam; under a filter,
+  // which leaves many of them, they are told apart.
+  std::uint32_t Filled(const Node& node) const { return node.filled; }
   std::uint32_t Flip(const Node& node) const { return node.flip; }
   HWY_INLINE Place Child(const Node& node, unsigned k) const {
     return {child_run(node.place.run, node.bits, k), (node.place.node << node.bits) + k};
   }
 
  private:
+  static HWY_INLINE std::uint32_t WithParticles(const TreeletNode& node) {
+    std::uint32_t filled = 0;
+    for (unsigned k = 0; k < node_fanout; ++k) filled |= node.lower[0][k] <= node.upper[0][k] ? 1u << k : 0u;
+    return filled;
+  }
+
   const Treelets& treelets_;
   std::uint64_t places_;
+  bool is_filtered_;
 };
 
 }  // namespace insitu::kernels::HWY_NAMESPACE

@@ -181,6 +181,15 @@ insitu_status insitu_particles_restore_order(insitu_context context, insitu_geom
   return call(context, [&](Context& c) { c.restore_order(particles.id); });
 }
 
+insitu_status insitu_particles_set_filter(insitu_context context, insitu_geometry particles,
+                                          const insitu_filter* filter) {
+  return call(context, [&](Context& c) {
+    if (filter == nullptr) return c.set_filter(particles.id, nullptr);
+    const insitu_filter own = copy_in(filter, "insitu_filter");
+    c.set_filter(particles.id, &own);
+  });
+}
+
 insitu_status insitu_geometry_set_style(insitu_context context, insitu_geometry geometry, const insitu_style* style) {
   return call(context, [&](Context& c) { c.set_style(geometry.id, copy_in(style, "insitu_style")); });
 }

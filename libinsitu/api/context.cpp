@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstring>
 #include <new>
+#include <utility>
 
+#include "api/filter_input.h"
 #include "api/particles_input.h"
 #include "core/error.h"
 #include "core/stopwatch.h"
@@ -186,6 +188,15 @@ void Context::restore_order(std::uint64_t id) {
   scene_dirty_ = true;
   scene_.clear();
   geometry.particles.restore_order();
+}
+
+void Context::set_filter(std::uint64_t id, const insitu_filter* description) {
+  GeometryObject& geometry = particle_set(id);
+  std::shared_ptr<const Filter> filter = description == nullptr ? nullptr : read_filter(budget_, *description);
+  if (filter && geometry.particles.is_bound()) geometry.particles.check_filter(*filter);
+  geometry.filter = std::move(filter);
+  geometry.filter_changed = true;
+  geometry.changed = true;
 }
 
 void Context::set_style(std::uint64_t id, const insitu_style& description) {
@@ -390,12 +401,14 @@ void Context::commit() {
   geometries_.for_each([this](std::uint64_t, GeometryObject& geometry) {
     if (!is_drawn(geometry)) return;
     if (geometry.glyphs) return check_glyphs(geometry);
+    if (geometry.filter) geometry.particles.check_filter(*geometry.filter);
     Colors::check(geometry.style, geometry.particles);
     colormap_of(geometry.style);
   });
   if (!is_null()) {
     scene_.clear();  // holds what is built anew
     geometries_.for_each([this](std::uint64_t, GeometryObject& geometry) {
+      select(geometry);
       build(geometry);
       if (!geometry.glyphs && geometry.changed && is_drawn(geometry)) build_cell(geometry);
     });
@@ -412,6 +425,19 @@ void Context::commit() {
   committed_ = true;
 }
 
+// Puts a changed filter in force: with the tree where that is still to be built, otherwise in the one that stands.
+void Context::select(GeometryObject& geometry) {
+  if (!std::exchange(geometry.filter_changed, false)) return;
+  Particles& particles = geometry.particles;
+  particles.set_filter(geometry.filter);
+  if (!particles.is_built()) return;
+  const Stopwatch watch;
+  report_.items_filtered -= particles.drawn_count() - particles.shown_count();
+  workers_.run([&] { particles.select(budget_); });
+  report_.items_filtered += particles.drawn_count() - particles.shown_count();
+  report_.build_s += watch.seconds();
+}
+
 void Context::build(GeometryObject& geometry) {
   Particles& particles = geometry.particles;
   if (!particles.is_bound() || particles.is_built()) return;
@@ -422,6 +448,7 @@ void Context::build(GeometryObject& geometry) {
   const std::uint64_t skipped = items - particles.drawn_count();
   report_.items_total += items;
   report_.items_skipped += skipped;
+  report_.items_filtered += particles.drawn_count() - particles.shown_count();
   const PkdBuilt& made = particles.how_built();
   report_.trees_built += made.how == PkdBuilt::How::built ? 1 : 0;
   report_.trees_repaired += made.how == PkdBuilt::How::repaired ? 1 : 0;
@@ -510,6 +537,7 @@ insitu_stats Context::stats() const {
   stats.peak_bytes = budget_.peak();
   stats.items = report_.items_total;
   stats.items_skipped = report_.items_skipped;
+  stats.items_filtered = report_.items_filtered;
   stats.trees_built = report_.trees_built;
   stats.trees_repaired = report_.trees_repaired;
   stats.trees_reused = report_.trees_reused;

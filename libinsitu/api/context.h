@@ -26,8 +26,10 @@ struct GeometryObject {
   Style style;
   bool style_is_default = false;  // of vectors: follows the attribute
   std::optional<CellDisplay> cell;
-  bool changed = true;   // arrays or cell, since the last commit
-  ShownCell shown_cell;  // as of the last commit of the step
+  std::shared_ptr<const Filter> filter;
+  bool filter_changed = false;  // since the last commit
+  bool changed = true;          // arrays, cell or filter, since the last commit
+  ShownCell shown_cell;         // as of the last commit of the step
   std::unique_ptr<Glyphs> glyphs;
   std::uint64_t checksum = 0;  // of the bound arrays, with INSITU_CHECK_CHECKSUM
 };
@@ -66,6 +68,7 @@ class Context {
   void update_particles(std::uint64_t id, const insitu_particles_desc& desc);
   void permutation(std::uint64_t id, std::uint64_t* original, std::uint64_t count);
   void restore_order(std::uint64_t id);
+  void set_filter(std::uint64_t id, const insitu_filter* filter);
   void set_style(std::uint64_t id, const insitu_style& style);
   void bounds(std::uint64_t id, double lower[3], double upper[3]);
   void destroy_geometry(std::uint64_t id);
@@ -113,6 +116,7 @@ class Context {
   void warn(const std::string& text);
   void check_values(const GeometryObject& geometry);
   void build(GeometryObject& geometry);
+  void select(GeometryObject& geometry);
   void refresh_scene();
   // context_glyphs.cpp
   GeometryObject& particle_set(std::uint64_t id);

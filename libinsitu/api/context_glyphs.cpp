@@ -113,7 +113,7 @@ void Context::build_glyphs(GeometryObject& object) {
 void Context::each_shown(const GeometryObject& object,
                          const std::function<void(const Geometry&, const glm::dvec3&)>& action) {
   if (!object.glyphs) {
-    if (object.particles.drawn_count() != 0) object.shown_cell.each_instance(object.particles, action);
+    if (object.particles.shown_count() != 0) object.shown_cell.each_instance(object.particles, action);
     return;
   }
   const GeometryObject& set = particle_set(object.glyphs->set());

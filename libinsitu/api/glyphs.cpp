@@ -19,6 +19,7 @@ ParticlePoints points_of(const Particles& particles, const CellDisplay* cell) {
   points.wrap = cell != nullptr && cell->wrap;
   points.prefer = particles.tree().prefer;
   points.prefer_context = particles.tree().prefer_context;
+  points.filter = particles.bound_filter();
   return points;
 }
 
@@ -44,7 +45,7 @@ void ShownCell::build(Budget& budget, const std::optional<CellDisplay>& display,
   display_ = display;
   double copies = 1.0;
   for (const std::uint32_t n : display_->replicate) copies *= n;
-  if (display_->wrap && particles.drawn_count() > 0) {
+  if (display_->wrap && particles.shown_count() > 0) {
     for (const auto& image : occupied_images(particles, display_->cell))
       images_.push_back(std::make_unique<ParticleImage>(particles, display_->cell, image));
     copies *= static_cast<double>(images_.size());
@@ -159,6 +160,8 @@ std::string Glyphs::build_bonds(Budget& budget, const Particles& particles, cons
   // Whatever is drawn of a pair has a first half, or is one.
   std::uint64_t bad = pairs;
   for (std::uint64_t i = 0; i < bond_sticks_.drawn_count(); ++i) bad -= bond_sticks_.drawn_ids()[i] % 2 == 0 ? 1 : 0;
+  if (points.filter != nullptr)
+    for (std::uint64_t pair = 0; pair < pairs; ++pair) bad -= source.is_filtered(pair) ? 1 : 0;
   if (bad == 0) return {};
   return std::to_string(bad) + " of " + std::to_string(pairs) +
          " bonds are not drawn: an index is out of range, both ends are the same, or a position is not finite";
@@ -181,7 +184,7 @@ std::string Glyphs::build_arrows(Budget& budget, const Particles& particles, con
   source.head_length = vectors->head_length > 0.0 ? vectors->head_length : 2.5 * source.head_radius;
   source.centred = (vectors->flags & INSITU_VECTORS_CENTRED) != 0;
   std::uint64_t bad = 0;
-  for (std::uint64_t item = 0; item < count; ++item) bad += source.is_good(item) ? 0 : 1;
+  for (std::uint64_t item = 0; item < count; ++item) bad += source.is_good(item) || !points.is_shown(item) ? 0 : 1;
   arrows_.build(budget, source, 2 * count, "the tree over the arrows");
   if (bad == 0) return {};
   return std::to_string(bad) + " of " + std::to_string(count) +

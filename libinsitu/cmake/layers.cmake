@@ -3,7 +3,8 @@
 cmake_minimum_required(VERSION 3.25)
 
 # Layers from users to leaves. Folder of the layer <l>: layer_folder_<l>; what it may include besides itself:
-# layer_may_include_<l>. A folder below geometry/ is a layer of its own: siblings do not know each other, pkd serves all.
+# layer_may_include_<l>. A folder below geometry/ is a layer of its own: siblings do not know each other, pkd and filter
+# serve all.
 set(insitu_layers mini-apps adapters insitu.h api renderer scene report image geometry core kernels)
 set(layer_folder_mini-apps mini-apps)
 set(layer_folder_adapters adapters)
@@ -22,6 +23,7 @@ set(layer_purpose_scene "cameras, lights, colour maps, what a step draws")
 set(layer_purpose_report "one JSON line per step")
 set(layer_purpose_image "frame buffer and files")
 set(layer_purpose_geometry "what can be hit; views of foreign arrays")
+set(layer_purpose_geometry/filter "which particles are drawn: conditions on attributes and positions")
 set(layer_purpose_geometry/particles "spheres from a simulation's arrays")
 set(layer_purpose_geometry/pkd "the tree over particle centres: build and order")
 set(layer_purpose_geometry/sticks "bonds, arrows and edges between points of particles")
@@ -100,10 +102,10 @@ function(rule_against from to to_file out)
   string(REGEX REPLACE "/.*" "" from_group "${from}")
   string(REGEX REPLACE "/.*" "" to_group "${to}")
   if(from_group STREQUAL "geometry" AND to_group STREQUAL "geometry")
-    if(to STREQUAL "geometry/pkd" OR (to STREQUAL "geometry" AND NOT from STREQUAL "geometry/pkd"))
+    if(to STREQUAL "geometry/pkd" OR to STREQUAL "geometry/filter" OR (to STREQUAL "geometry" AND NOT from STREQUAL "geometry/pkd"))
       return()
     endif()
-    set(${out} "${from} must not include ${to}: kinds of geometry include geometry/ and geometry/pkd, not each other"
+    set(${out} "${from} must not include ${to}: kinds of geometry include geometry/, geometry/pkd and geometry/filter, not each other"
         PARENT_SCOPE)
     return()
   endif()

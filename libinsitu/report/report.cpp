@@ -66,7 +66,8 @@ std::string to_json_line(const StepReport& report) {
              object({member("borrowed", scalar(report.bytes_borrowed)), member("copied", scalar(report.bytes_copied)),
                      member("owned", scalar(report.bytes_owned)), member("peak", scalar(report.bytes_peak))})),
       member("items",
-             object({member("total", scalar(report.items_total)), member("skipped", scalar(report.items_skipped))})),
+             object({member("total", scalar(report.items_total)), member("skipped", scalar(report.items_skipped)),
+                     member("filtered", scalar(report.items_filtered))})),
       member("pixels", object({member("total", scalar(report.pixels)), member("samples", scalar(report.samples)),
                                member("over_error", scalar(report.pixels_over_error))})),
       member(

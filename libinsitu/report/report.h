@@ -33,6 +33,7 @@ struct StepReport {
 
   uint64_t items_total = 0;
   uint64_t items_skipped = 0;
+  uint64_t items_filtered = 0;
 
   uint64_t pixels = 0;             // rendered
   uint64_t samples = 0;            // camera rays through them

@@ -21,14 +21,6 @@ std::uint32_t component_in(const std::string& text, std::string& name) {
   return text.back() >= '1' && text.back() <= '4' ? static_cast<std::uint32_t>(text.back() - '0') : 0;
 }
 
-const Attribute* find_component(const Frame& frame, const std::string& text, std::uint32_t& component) {
-  if (const Attribute* attribute = frame.find(text)) return attribute;
-  std::string name;
-  component = component_in(text, name);
-  const Attribute* const attribute = component > 0 ? frame.find(name) : nullptr;
-  return attribute && component <= attribute->components ? attribute : nullptr;
-}
-
 std::string fitting_colormap(const Attribute& attribute) {
   if (attribute.name == "element") return "elements";
   return attribute.categorical ? "categorical" : "viridis";
@@ -52,6 +44,14 @@ RadiusChoice radii_of(const Attribute& attribute) {
 }
 
 }  // namespace
+
+const Attribute* find_component(const Frame& frame, const std::string& text, std::uint32_t& component) {
+  if (const Attribute* attribute = frame.find(text)) return attribute;
+  std::string name;
+  component = component_in(text, name);
+  const Attribute* const attribute = component > 0 ? frame.find(name) : nullptr;
+  return attribute && component <= attribute->components ? attribute : nullptr;
+}
 
 ColorChoice choose_color(const Frame& frame, const Options& options) {
   ColorChoice choice;

@@ -22,6 +22,10 @@ struct RadiusChoice {
   double for_all = 0.0;             // 0: left to the library
 };
 
+// "velocity", "velocity.x", "stress.4": the attribute and the component, counted from 1, or 0 where the text names
+// none. nullptr when the frame does not have it.
+const Attribute* find_component(const Frame& frame, const std::string& text, std::uint32_t& component);
+
 // Both throw UsageError with the names that would be valid.
 ColorChoice choose_color(const Frame& frame, const Options& options);
 RadiusChoice choose_radius(const Frame& frame, const Options& options);

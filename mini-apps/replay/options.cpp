@@ -28,6 +28,7 @@ struct Texts {
   std::string bonds;
   std::string replicate;
   std::vector<double> range;
+  std::vector<std::string> filters;
   bool no_hetatm = false;
 };
 
@@ -124,6 +125,13 @@ void add_looks(CLI::App& app, Options& options, Texts& texts) {
   app.add_option("--radius-scale", options.radius_scale, wrapped("Factor on every radius"))
       ->type_name("F")
       ->check(CLI::PositiveNumber)
+      ->group(group);
+  app.add_option("--filter", texts.filters,
+                 wrapped("Draws only the particles for which it holds: speed:0.5..2, type=1,3, box:X0,Y0,Z0,X1,Y1,Z1, "
+                         "plane:A,B,C,D (A x + B y + C z >= D), \"not ...\", \"... or ...\"; given several times, "
+                         "all of them"))
+      ->type_name("CONDITION")
+      ->allow_extra_args(false)
       ->group(group);
   app.add_option("--ao", options.ao_samples, wrapped("Ambient occlusion with N rays per hit; 0 = none"))
       ->check(CLI::Range(0, 4096))
@@ -257,6 +265,8 @@ void convert(const Texts& texts, Options& options) {
   if (!options.read.trajectories.empty() && options.files.size() != 1) {
     throw UsageError("--trajectory: expected one FILE, whose particles it moves");
   }
+  for (const std::string& text : texts.filters) options.filters.push_back(parse_filter(text));
+  alternatives_of(options.filters);  // says when they are too many
   if (!texts.bonds.empty()) options.bonds = parse_bonds(texts.bonds);
   if (!texts.replicate.empty()) options.replicate = parse_replicate(texts.replicate);
   options.order = order_names.at(texts.order);

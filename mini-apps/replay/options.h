@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "filter_text.h"
 #include "reader.h"
 
 namespace replay {
@@ -52,6 +53,7 @@ struct Options {
   std::optional<std::array<double, 2>> range;
   std::string radius;
   double radius_scale = 1.0;
+  std::vector<FilterChoice> filters;     // all of them have to hold
   double treelet_share = 0.0;            // of the bytes of the positions
   std::optional<double> bonds;           // the longest one; 0: by the radii of the elements
   std::optional<double> ball_and_stick;  // factor on the balls

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <iostream>
 
+#include "filters.h"
 #include "glyphs.h"
 #include "image_name.h"
 
@@ -97,6 +98,7 @@ void Player::play(Frame& frame) {
   check(insitu_step_begin(context, step, frame.time.value_or(static_cast<double>(step))));
   update(frame, arrays);
   set_style(color);
+  set_filter(frame);
   update_glyphs(frame);
   check(insitu_commit(context));
   if (fit_) fit();
@@ -162,6 +164,12 @@ void Player::set_style(const ColorChoice& color) {
   constexpr double nearly_black = 1e-6;
   for (std::size_t i = 0; i < 3; ++i) style.color[i] = std::max(color.color[i], nearly_black);
   check(insitu_geometry_set_style(context_.get(), particles_, &style));
+}
+
+void Player::set_filter(const Frame& frame) {
+  const FrameFilter filter(frame, options_);
+  const insitu_filter description = filter.filter();
+  check(insitu_particles_set_filter(context_.get(), particles_, &description));
 }
 
 void Player::update_glyphs(const Frame& frame) {
@@ -239,9 +247,12 @@ void Player::print_line(const std::string& name) {
   insitu_stats_init(&stats);
   check(insitu_stats_get(context_.get(), &stats));
   char text[128];
-  std::snprintf(text, sizeof text, "  %llu particles, %llu skipped, %.2f s\n",
-                static_cast<unsigned long long>(stats.items), static_cast<unsigned long long>(stats.items_skipped),
-                seconds);
+  const auto number = [](std::uint64_t count) { return static_cast<unsigned long long>(count); };
+  char filtered[40] = "";
+  if (!options_.filters.empty())
+    std::snprintf(filtered, sizeof filtered, ", %llu filtered", number(stats.items_filtered));
+  std::snprintf(text, sizeof text, "  %llu particles, %llu skipped%s, %.2f s\n", number(stats.items),
+                number(stats.items_skipped), filtered, seconds);
   std::cout << name << text << std::flush;
 }
 

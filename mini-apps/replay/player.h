@@ -51,6 +51,7 @@ class Player {
   std::uint64_t number_of(const Frame& frame);
   void update(Frame& frame, Arrays& arrays);
   void set_style(const ColorChoice& color);
+  void set_filter(const Frame& frame);
   void update_glyphs(const Frame& frame);
   void fit();
   void draw(std::uint64_t step, double angle_deg);

@@ -80,6 +80,25 @@ static void check_structs(void) {
   OFFSET(insitu_particles_desc, reserved, 140);
   OFFSET(insitu_particles_desc, treelet_share, 144);
 
+  SIZE(insitu_filter_term, 136);
+  OFFSET(insitu_filter_term, struct_size, 0);
+  OFFSET(insitu_filter_term, kind, 4);
+  OFFSET(insitu_filter_term, flags, 8);
+  OFFSET(insitu_filter_term, component, 12);
+  OFFSET(insitu_filter_term, attribute, 16);
+  OFFSET(insitu_filter_term, range, 24);
+  OFFSET(insitu_filter_term, set, 40);
+  OFFSET(insitu_filter_term, lower, 48);
+  OFFSET(insitu_filter_term, upper, 72);
+  OFFSET(insitu_filter_term, plane, 96);
+  OFFSET(insitu_filter_term, alternative, 128);
+  OFFSET(insitu_filter_term, reserved, 132);
+
+  SIZE(insitu_filter, 16);
+  OFFSET(insitu_filter, struct_size, 0);
+  OFFSET(insitu_filter, term_count, 4);
+  OFFSET(insitu_filter, terms, 8);
+
   SIZE(insitu_style, 80);
   OFFSET(insitu_style, struct_size, 0);
   OFFSET(insitu_style, color_by, 4);
@@ -143,7 +162,7 @@ static void check_structs(void) {
   OFFSET(insitu_image_desc, reserved_2, 28);
   OFFSET(insitu_image_desc, pixel_error, 32);
 
-  SIZE(insitu_stats, 176);
+  SIZE(insitu_stats, 184);
   OFFSET(insitu_stats, struct_size, 0);
   OFFSET(insitu_stats, reserved, 4);
   OFFSET(insitu_stats, step, 8);
@@ -167,6 +186,7 @@ static void check_structs(void) {
   OFFSET(insitu_stats, items_moved, 152);
   OFFSET(insitu_stats, treelets, 160);
   OFFSET(insitu_stats, treelet_bytes, 168);
+  OFFSET(insitu_stats, items_filtered, 176);
 
   SIZE(insitu_cell, 152);
   OFFSET(insitu_cell, struct_size, 0);
@@ -261,6 +281,12 @@ static void check_constants(void) {
   VALUE(INSITU_ORDER_PERMUTE, 1);
   VALUE(INSITU_ORDER_COPY, 2);
   VALUE(INSITU_PARTICLES_KEEP_PERMUTATION, 1);
+
+  VALUE(INSITU_FILTER_RANGE, 1);
+  VALUE(INSITU_FILTER_SET, 2);
+  VALUE(INSITU_FILTER_BOX, 3);
+  VALUE(INSITU_FILTER_PLANE, 4);
+  VALUE(INSITU_FILTER_NOT, 1);
 
   VALUE(INSITU_COLOR_UNIFORM, 0);
   VALUE(INSITU_COLOR_ATTRIBUTE, 1);

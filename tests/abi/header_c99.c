@@ -43,6 +43,8 @@ int main(void) {
   EXPECT_INITIALISED(insitu_array);
   EXPECT_INITIALISED(insitu_array_report);
   EXPECT_INITIALISED(insitu_particles_desc);
+  EXPECT_INITIALISED(insitu_filter_term);
+  EXPECT_INITIALISED(insitu_filter);
   EXPECT_INITIALISED(insitu_style);
   EXPECT_INITIALISED(insitu_colormap_desc);
   EXPECT_INITIALISED(insitu_camera);

@@ -17,6 +17,7 @@ struct ModelSet {
   bool has_heat = false;  // the arrays have the attribute "heat"
   std::uint64_t count = 0;
   bool styled_by_heat = false;
+  bool filtered_by_heat = false;
   int colormap = -1;  // index of an own map that the style refers to
 };
 
@@ -60,7 +61,8 @@ class CallModel {
       if (!set.alive || !set.bound) continue;
       if (set.colormap >= 0 && !colormaps[static_cast<std::size_t>(set.colormap)])
         problems.push_back(INSITU_ERROR_INVALID_HANDLE);
-      if (set.styled_by_heat && !set.has_heat) problems.push_back(INSITU_ERROR_INVALID_ARGUMENT);
+      if ((set.styled_by_heat || set.filtered_by_heat) && !set.has_heat)
+        problems.push_back(INSITU_ERROR_INVALID_ARGUMENT);
     }
     return problems;
   }

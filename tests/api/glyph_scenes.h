@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "api_test_tools.h"
+#include "filter_terms.h"
 
 namespace insitu::testing {
 
@@ -83,6 +84,8 @@ struct Wish {
   const insitu_cell* cell = nullptr;
   std::uint32_t threads = 1;
   std::uint32_t order = INSITU_ORDER_INDEX;
+  std::vector<insitu_filter_term> filter;
+  bool filter_late = false;  // set after a first commit without it
 };
 
 inline insitu_camera camera_at(double x, double y, double z) {
@@ -147,6 +150,12 @@ inline Picture draw(Data data, const Wish& wish, std::string* warnings = nullptr
     bonds.cutoff = wish.cutoff;
     bonds.radius = 0.018;
     EXPECT_TRUE(works(context, insitu_bonds_create(context, &bonds, &glyphs)));
+  }
+  if (!wish.filter.empty()) {
+    if (wish.filter_late) {
+      EXPECT_TRUE(works(context, insitu_commit(context)));
+    }
+    EXPECT_TRUE(works(context, set_filter(context, set, wish.filter)));
   }
   EXPECT_TRUE(works(context, insitu_commit(context)));
   EXPECT_TRUE(works(context, insitu_render(context, view, image)));

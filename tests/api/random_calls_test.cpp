@@ -160,13 +160,13 @@ class Sequence {
   void one_call() {
     using Call = void (Sequence::*)();
     static constexpr Call all[] = {
-        &Sequence::create_set,    &Sequence::update,     &Sequence::update,       &Sequence::update,
-        &Sequence::permutation,   &Sequence::restore,    &Sequence::set_style,    &Sequence::bounds,
-        &Sequence::destroy_set,   &Sequence::create_map, &Sequence::destroy_map,  &Sequence::create_view,
-        &Sequence::change_view,   &Sequence::fit,        &Sequence::destroy_view, &Sequence::create_image,
-        &Sequence::render,        &Sequence::render,     &Sequence::write,        &Sequence::channel,
-        &Sequence::destroy_image, &Sequence::step_begin, &Sequence::step_begin,   &Sequence::commit,
-        &Sequence::commit,        &Sequence::step_end,   &Sequence::stats};
+        &Sequence::create_set,   &Sequence::update,        &Sequence::update,     &Sequence::update,
+        &Sequence::permutation,  &Sequence::restore,       &Sequence::set_style,  &Sequence::bounds,
+        &Sequence::set_filter,   &Sequence::destroy_set,   &Sequence::create_map, &Sequence::destroy_map,
+        &Sequence::create_view,  &Sequence::change_view,   &Sequence::fit,        &Sequence::destroy_view,
+        &Sequence::create_image, &Sequence::render,        &Sequence::render,     &Sequence::write,
+        &Sequence::channel,      &Sequence::destroy_image, &Sequence::step_begin, &Sequence::step_begin,
+        &Sequence::commit,       &Sequence::commit,        &Sequence::step_end,   &Sequence::stats};
     (this->*all[random_.below(std::size(all))])();
   }
 
@@ -355,6 +355,45 @@ class Sequence {
     if (result != INSITU_OK) return;
     set_of(pick).styled_by_heat = by_heat;
     set_of(pick).colormap = own_map;
+  }
+
+  void set_filter() {
+    const Pick pick = pick_set();
+    const bool by_heat = random_.below(2) == 0;
+    const std::int32_t members[] = {0, 2};
+    insitu_array set = insitu_array_records(INSITU_I32, 1, members, 2, 0);
+    insitu_filter_term terms[3];
+    for (insitu_filter_term& term : terms) {
+      insitu_filter_term_init(&term);
+      term.kind = INSITU_FILTER_BOX;
+      term.upper[0] = term.upper[1] = term.upper[2] = random_.unit();
+      term.flags = random_.below(2) == 0 ? std::uint32_t{INSITU_FILTER_NOT} : 0u;
+      term.alternative = static_cast<std::uint32_t>(random_.below(2));
+    }
+    terms[1].kind = by_heat ? INSITU_FILTER_RANGE : INSITU_FILTER_SET;
+    terms[1].attribute = by_heat ? "heat" : "type";
+    terms[1].range[1] = 0.5;
+    terms[1].set = &set;
+    insitu_filter filter;
+    insitu_filter_init(&filter);
+    filter.terms = terms;
+    filter.term_count = static_cast<std::uint32_t>(random_.below(4));
+    const bool asks_for_heat = by_heat && filter.term_count > 1;
+    insitu_status expected = INSITU_OK;
+    if (pick.index < 0) {
+      expected = INSITU_ERROR_INVALID_HANDLE;
+    } else if (!legal_ && random_.below(6) == 0) {
+      filter.term_count = 3;
+      terms[2].kind = 99;
+      expected = INSITU_ERROR_INVALID_ARGUMENT;
+    } else if (set_of(pick).bound && asks_for_heat && !set_of(pick).has_heat) {
+      expected = INSITU_ERROR_INVALID_ARGUMENT;
+    }
+    if (skip(expected)) return;
+    const insitu_status result = model_.call(expected);
+    expect("set_filter", guarded(false, [&] { return insitu_particles_set_filter(context_, {pick.id}, &filter); }),
+           result);
+    if (result == INSITU_OK) set_of(pick).filtered_by_heat = asks_for_heat;
   }
 
   void bounds() {

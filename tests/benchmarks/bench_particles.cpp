@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "filtered_particles.h"
 #include "measure.h"
 #include "mixed_radii.h"
 #include "paper_variants.h"
@@ -21,6 +22,7 @@ int main(int argc, char** argv) {
   bool builds_only = false;
   bool frames_only = false;
   bool variants_only = false;
+  bool filters_only = false;
   bool large = false;
   std::string json;
   std::vector<std::uint64_t> counts;
@@ -31,6 +33,7 @@ int main(int argc, char** argv) {
   app.add_flag("--builds-only", builds_only, "builds without frames");
   app.add_flag("--frames-only", frames_only, "frames without builds");
   app.add_flag("--variants-only", variants_only, "only the paper's structure beside ours");
+  app.add_flag("--filters-only", filters_only, "only filters");
   app.add_option("--json", json, "write {context, results} to this file");
   app.add_option("--particles", counts, "numbers of particles (default 1000000 and 10000000)");
   app.add_option("--scenes", scenes, "uniform, clustered")->capture_default_str();
@@ -59,7 +62,7 @@ int main(int argc, char** argv) {
   const auto note = [&metrics](const std::map<std::string, double>& speeds) {
     for (const auto& [metric, value] : speeds) metrics.note_speed(metric, value);
   };
-  const bool with_builds = !frames_only && !variants_only;
+  const bool with_builds = !frames_only && !variants_only && !filters_only;
   for (const std::uint64_t count : counts) {
     for (const std::string& name : scenes) {
       const bench::ParticleScene scene = bench::make_scene(name, count);
@@ -69,6 +72,8 @@ int main(int argc, char** argv) {
           note(measure_displaced_rebuild(builds, scene, teams.back(), report.context()["rebuilds"]));
       }
       if (builds_only) continue;
+      if (!variants_only) measure_filters(frames, scene, teams.back(), metrics, report.context()["filtered_particles"]);
+      if (filters_only) continue;
       if (!variants_only) {
         measure_frames(frames, scene, teams, metrics, report.context()["frames"]);
         measure_mixed_radii(frames, scene, teams.back(), metrics, report.context()["mixed_radii"]);

@@ -3,6 +3,8 @@
 
 #include <malloc.h>
 
+#include <memory>
+
 #include "core/workers.h"
 #include "geometry/particles/particles.h"
 #include "particle_scenes.h"
@@ -12,20 +14,27 @@ namespace bench {
 class OwnParticles {
  public:
   OwnParticles(const ParticleScene& scene, insitu::ParticleOrder order, double treelet_share)
-      : position(scene.position), radius(scene.radii), particles_("particles", order, false) {
+      : position(scene.position), radius(scene.radii), value(scene.values), particles_("particles", order, false) {
     insitu::ParticleArrays arrays;
     arrays.position = view(position, 3);
     if (!radius.empty()) arrays.radius = view(radius, 1);
+    if (!value.empty()) arrays.attributes.push_back({"value", view(value, 1)});
     arrays.radius_default = scene.radius;
     arrays.treelet_share = treelet_share;
     particles_.bind(arrays);
   }
   void build() { particles_.build(budget_); }
+  // Draws only those particles; of a built tree no more than that is changed.
+  void filter(std::shared_ptr<const insitu::Filter> filter) {
+    particles_.set_filter(std::move(filter));
+    if (particles_.is_built()) particles_.select(budget_);
+  }
   const insitu::Particles& set() const { return particles_; }
   std::uint64_t data_bytes() const { return position.size() * sizeof(float); }
 
   std::vector<float> position;
   std::vector<float> radius;
+  std::vector<float> value;
 
  private:
   static insitu::kernels::ArrayView view(const std::vector<float>& values, std::uint32_t components) {

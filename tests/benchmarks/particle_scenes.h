@@ -13,6 +13,7 @@ struct ParticleScene {
   std::string name;
   std::vector<float> position;  // x y z x y z ...
   std::vector<float> radii;     // one each; empty: `radius` for all
+  std::vector<float> values;    // an attribute, "value"; or none
   double radius = 0.0;
   std::uint64_t count() const { return position.size() / 3; }
 };

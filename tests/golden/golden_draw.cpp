@@ -136,6 +136,13 @@ insitu_geometry add_set(const Context& context, const Set& set, const SetArrays&
 void add_glyphs(const Context& context, const Glyphs& glyphs, insitu_geometry set) {
   insitu_geometry geometry;
   if (glyphs.cell.struct_size != 0) context.expect_ok(insitu_particles_set_cell(context.get(), set, &glyphs.cell));
+  if (!glyphs.filter.empty()) {
+    insitu_filter filter;
+    insitu_filter_init(&filter);
+    filter.term_count = static_cast<std::uint32_t>(glyphs.filter.size());
+    filter.terms = glyphs.filter.data();
+    context.expect_ok(insitu_particles_set_filter(context.get(), set, &filter));
+  }
   if (glyphs.bonds > 0.0) {
     insitu_bonds_desc bonds;
     insitu_bonds_desc_init(&bonds);

@@ -242,6 +242,39 @@ Scene replicas() {
   return scene;
 }
 
+// A lattice with bonds whose nearest corner is cut away, but for the balls around the middle: not in a box, or of a
+// small value.
+Scene filtered() {
+  Scene scene = make_scene("filtered", {2.0, 1.875, 2.0}, {0.625, 0.5, 1.0}, 12.5);
+  Set set;
+  for (int i = 0; i < 125; ++i) {
+    const int x = i % 5;
+    const int y = i / 5 % 5;
+    const int z = i / 25;
+    set.add(x, y, z, 0.3125, (x - 2) * (x - 2) + (y - 2) * (y - 2) + (z - 2) * (z - 2), 0);
+  }
+  set.color_by = "value";
+  set.colormap = "coolwarm";
+  scene.sets.push_back(set);
+  insitu_filter_term corner;
+  insitu_filter_term_init(&corner);
+  corner.kind = INSITU_FILTER_BOX;
+  corner.flags = INSITU_FILTER_NOT;
+  for (double& low : corner.lower) low = 2.0;
+  for (double& high : corner.upper) high = 4.0;
+  insitu_filter_term core;
+  insitu_filter_term_init(&core);
+  core.kind = INSITU_FILTER_RANGE;
+  core.attribute = "value";
+  core.range[1] = 1.0;
+  core.alternative = 1;
+  scene.glyphs.filter = {corner, core};
+  scene.glyphs.bonds = 1.125;
+  scene.glyphs.bond_radius = 0.09375;
+  scene.effects.flags = INSITU_EFFECT_SHADOWS;
+  return scene;
+}
+
 Scene transparent_background() {
   Scene scene = grid("transparent_background", "categorical");
   scene.sets[0].color_by = "type";
@@ -266,6 +299,7 @@ std::vector<Scene> all_scenes() {
           ball_and_stick(),
           arrows(),
           replicas(),
+          filtered(),
           transparent_background()};
 }
 

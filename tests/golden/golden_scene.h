@@ -40,6 +40,7 @@ struct Glyphs {
   double arrows = 0.0;  // length over that of the vector; 0: none
   double arrow_radius = 0.0;
   insitu_cell cell = {};  // struct_size 0: none
+  std::vector<insitu_filter_term> filter;
 };
 
 struct Scene {

@@ -249,6 +249,8 @@ TEST_F(Program, WrongOptionsExitWithTwo) {
       {"steps.dump --bonds auto", "needs radii of elements"},
       {"water.xyz --bonds -1", "the longest bond"},
       {"steps.dump --replicate 2,2", "expected NX,NY,NZ"},
+      {"water.xyz --filter speed", "is no condition"},
+      {"water.xyz --filter speed:0..1", "expected one of element, type"},
   };
   for (const auto& c : cases) {
     const Outcome result = run(c.arguments);
@@ -276,6 +278,29 @@ TEST_F(Program, BondsArrowsAndTheBoxAreDrawn) {
   for (const char* arguments : {"--bonds auto", "--bonds 1.5", "--ball-and-stick 0.25", "--vectors velocity", "--cell"})
     EXPECT_GT(owned(arguments), plain) << arguments;
   EXPECT_GT(owned("--ball-and-stick 0.3 --cell --replicate 2,2,2 --wrap --vectors velocity --vector-scale 0.5"), plain);
+}
+
+TEST_F(Program, FiltersLeaveParticlesOut) {
+  folder_.write("moving.xyz",
+                "4\nProperties=species:S:1:pos:R:3:velo:R:3:id:I:1\n"
+                "O 0 0 0 1 0 0 11\nH 1 0 0 0 2 0 12\nH 2 0 0 0 0 3 13\nC 3 0 0 4 0 0 14\n");
+  const struct {
+    const char* arguments;
+    int left_out;
+  } cases[] = {{"--filter speed:1.5..3", 2},
+               {"--filter velocity.x:0.5..", 2},
+               {"--filter 'not element=1'", 2},
+               {"--filter 'element=8 or id=13,14'", 1},
+               {"--filter speed:2.. --filter 'not id=14'", 2},
+               {"--filter box:0.5,-1,-1,2,1,1 --filter plane:-1,0,0,-1.5", 3},
+               {"--filter 'id=11 or id=12' --filter 'element=1 or speed:..1'", 2},
+               {"--filter id=99", 4}};
+  for (const auto& c : cases) {
+    const Outcome result = run(std::string("moving.xyz --out a.png ") + c.arguments);
+    EXPECT_EQ(result.exit_code, 0) << c.arguments << ": " << result.err;
+    EXPECT_THAT(result.out, HasSubstr("4 particles, 0 skipped, " + std::to_string(c.left_out) + " filtered"))
+        << c.arguments;
+  }
 }
 
 TEST_F(Program, ErrorsOfTheLibraryExitWithOne) {

@@ -22,7 +22,7 @@ constexpr std::size_t batch = 256;
 
 ParticleImage::ParticleImage(const Particles& particles, const Cell& cell, const OccupiedImage& image)
     : particles_(particles), cell_(cell), image_(image.image), lower_{}, upper_{} {
-  const double radius = particles.tree().radius_max * particles.position_scale();
+  const double radius = particles.shown_radius_max() * particles.position_scale();
   for (int c = 0; c < 3; ++c) {
     const double reach = radius + 1e-9 * (image.upper[c] - image.lower[c] + radius);
     lower_[c] = image.lower[c] - reach;
@@ -118,6 +118,7 @@ std::vector<OccupiedImage> occupied_images(const Particles& particles, const Cel
   tbb::parallel_for(tbb::blocked_range<std::uint64_t>(0, particles.item_count(), 1 << 14), [&](const auto& range) {
     Images own;
     for (std::uint64_t item = range.begin(); item < range.end(); ++item) {
+      if (!particles.shows(item)) continue;
       OccupiedImage at;
       particles.centre(item, at.lower);
       if (!std::all_of(at.lower, at.lower + 3, [](double x) { return std::abs(x) <= 1e100; })) continue;

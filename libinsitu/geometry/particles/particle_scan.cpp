@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/float_environment.h"
 #include "kernels/pkd_partition.h"
@@ -14,21 +13,7 @@
 namespace insitu {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr ScanResult nothing = {{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}, 0.0, 0};
-
 bool is_good_radius(double radius) { return radius > 0.0 && radius <= largest_coordinate; }
-
-ScanResult join(const ScanResult& a, const ScanResult& b) {
-  ScanResult both = a;
-  for (int c = 0; c < 3; ++c) {
-    both.lower[c] = std::min(a.lower[c], b.lower[c]);
-    both.upper[c] = std::max(a.upper[c], b.upper[c]);
-  }
-  both.radius_max = std::max(a.radius_max, b.radius_max);
-  both.drawn = a.drawn + b.drawn;
-  return both;
-}
 
 // Packed records without a radius each, all of them fit to be drawn: by SIMD. False, and nothing done, otherwise.
 template <class Positions>
@@ -45,7 +30,7 @@ bool scan_records(const Positions& positions, std::uint64_t begin, std::uint64_t
       range.upper[c] = static_cast<double>(upper[c]);
       if (range.lower[c] < -largest_coordinate || range.upper[c] > largest_coordinate) return false;
     }
-    result = join(result, range);
+    result = joined(result, range);
     return true;
   }
   return false;
@@ -79,16 +64,27 @@ ScanResult scan(const kernels::PkdTree& tree, bool judge_radius) {
     return result;
   };
   constexpr std::uint64_t grain = 1 << 16;
-  ScanResult result =
-      tbb::parallel_reduce(tbb::blocked_range<std::uint64_t>(0, tree.position.count, grain), nothing, scan_range, join);
+  ScanResult result = tbb::parallel_reduce(tbb::blocked_range<std::uint64_t>(0, tree.position.count, grain),
+                                           nothing_found(), scan_range, joined);
   if (!each_radius && judge_radius) {
-    if (!is_good_radius(tree.radius.uniform)) return nothing;
+    if (!is_good_radius(tree.radius.uniform)) return nothing_found();
     result.radius_max = tree.radius.uniform;
   }
   return result;
 }
 
 }  // namespace
+
+ScanResult joined(const ScanResult& a, const ScanResult& b) {
+  ScanResult both = a;
+  for (int c = 0; c < 3; ++c) {
+    both.lower[c] = std::min(a.lower[c], b.lower[c]);
+    both.upper[c] = std::max(a.upper[c], b.upper[c]);
+  }
+  both.radius_max = std::max(a.radius_max, b.radius_max);
+  both.drawn = a.drawn + b.drawn;
+  return both;
+}
 
 bool is_drawable(const kernels::PkdTree& tree, std::uint64_t item) {
   for (std::uint32_t c = 0; c < 3; ++c)

@@ -1,6 +1,9 @@
 // The first pass over the arrays of a step: which particles can be drawn, and within which bounds.
 #pragma once
 
+#include <cstdint>
+#include <limits>
+
 #include "kernels/pkd_tree.h"
 
 namespace insitu {
@@ -14,6 +17,13 @@ struct ScanResult {
   double radius_max;
   std::uint64_t drawn;
 };
+
+constexpr ScanResult nothing_found() {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  return {{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}, 0.0, 0};
+}
+// Of the particles of both.
+ScanResult joined(const ScanResult& a, const ScanResult& b);
 
 bool is_drawable(const kernels::PkdTree& tree, std::uint64_t item);
 

@@ -9,27 +9,9 @@
 
 #include "core/float_environment.h"
 #include "geometry/particles/particles.h"
+#include "geometry/styled_value.h"
 
 namespace insitu {
-
-double styled_value(const kernels::ArrayView& view, std::uint64_t item, std::uint32_t component) {
-  if (component > 0) return view.value(item, component - 1);
-  if (view.components == 1) return view.value(item);
-  // The length of a vector, scaled by its largest component: squares neither overflow nor vanish.
-  double largest = 0.0;
-  for (std::uint32_t c = 0; c < view.components; ++c) {
-    const double part = std::abs(view.value(item, c));
-    if (std::isnan(part)) return part;
-    largest = std::max(largest, part);
-  }
-  if (largest == 0.0 || std::isinf(largest)) return largest;
-  double sum = 0.0;
-  for (std::uint32_t c = 0; c < view.components; ++c) {
-    const double part = view.value(item, c) / largest;
-    sum += part * part;
-  }
-  return largest * std::sqrt(sum);
-}
 
 ValueRange value_range(const kernels::ArrayView& view, std::uint32_t component) {
   constexpr double infinity = std::numeric_limits<double>::infinity();

@@ -108,6 +108,7 @@ void Particles::release() {
   moved_.clear();
   tree_ = {};
   treelets_ = {};
+  bound_filter_.reset();
 }
 
 void Particles::build(Budget& budget) {
@@ -124,8 +125,7 @@ void Particles::build(Budget& budget) {
     tree_.radius.uniform = automatic_radius(scan, 1.0 / arrays.position_scale) * arrays.radius_scale;
     scan.radius_max = tree_.radius.uniform;
   }
-  std::copy_n(scan.lower, 3, lower_);
-  std::copy_n(scan.upper, 3, upper_);
+  all_ = scan;
   if (!is_good_root(root_, scan)) root_ = root_around(scan);
   std::copy_n(root_.lower, 3, tree_.lower);
   std::copy_n(root_.upper, 3, tree_.upper);
@@ -150,6 +150,7 @@ void Particles::build(Budget& budget) {
       build_copy(budget);
       break;
   }
+  apply_filter(budget);
   add_treelets(budget);
   built_ = true;
 }
@@ -169,18 +170,21 @@ std::uint64_t Particles::treelet_room(const Budget& budget) const {
   const double position_bytes =
       static_cast<double>(tree_.count) * static_cast<double>(3 * kernels::size_of(tree_.position.type));
   const double share = std::min(arrays_->treelet_share * position_bytes, 9e18);
-  return std::min(static_cast<std::uint64_t>(share), budget.left());
+  const std::uint64_t held = treelet_nodes_.bytes();
+  const std::uint64_t left = budget.left() > ~std::uint64_t{0} - held ? ~std::uint64_t{0} : budget.left() + held;
+  return std::min(static_cast<std::uint64_t>(share), left);
 }
 
 void Particles::add_treelets(Budget& budget) {
-  if (!treelets_.exist()) return;
-  // Longer ones where the tree itself has taken the room meanwhile.
-  const unsigned depth = treelet_depth(tree_.count, most_per_treelet, treelet_room(budget));
-  treelets_ = treelet_shape(tree_.count, depth);
-  if (!treelets_.exist()) return;
+  // Longer ones where the tree itself has taken the room meanwhile, and where a filter leaves few particles of a run.
+  const std::uint64_t room = treelet_room(budget);
+  const double most = std::ldexp(most_per_treelet, static_cast<int>(tree_.selected.thinning));
+  treelets_ = treelet_shape(tree_.count, treelet_depth(tree_.count, most, room));
+  if (!treelets_.exist()) return treelet_nodes_.clear();
   treelet_nodes_.reset(budget, treelets_.node_count(), "the treelets of the particles");
   build_treelets(tree_, treelets_, treelet_nodes_.data());
   treelets_.nodes = treelet_nodes_.data();
+  add_copies(budget, room - treelet_nodes_.bytes());
 }
 
 double Particles::particles_per_treelet() const {
@@ -346,10 +350,10 @@ void Particles::bounds(double lower[3], double upper[3]) const {
   for (int c = 0; c < 3; ++c) {
     lower[c] = infinity;
     upper[c] = -infinity;
-    if (drawn_count() == 0) continue;
+    if (shown_count() == 0) continue;
     const double scale = arrays_->position_scale;
-    lower[c] = arrays_->position_origin[c] + (lower_[c] - tree_.radius_max) * scale;
-    upper[c] = arrays_->position_origin[c] + (upper_[c] + tree_.radius_max) * scale;
+    lower[c] = arrays_->position_origin[c] + (shown_.lower[c] - shown_.radius_max) * scale;
+    upper[c] = arrays_->position_origin[c] + (shown_.upper[c] + shown_.radius_max) * scale;
   }
 }
 

@@ -1,6 +1,7 @@
 // A set of particles: the arrays of this step, the tree over them, and how they look.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,7 +9,10 @@
 #include "core/budget.h"
 #include "core/workers.h"
 #include "geometry/array_view.h"
+#include "geometry/filter/filter.h"
 #include "geometry/geometry.h"
+#include "geometry/particles/particle_copies.h"
+#include "geometry/particles/particle_selection.h"
 #include "geometry/pkd/pkd_build.h"
 #include "kernels/pkd_tree.h"
 #include "kernels/ray.h"
@@ -58,13 +62,25 @@ class Particles : public Geometry {
   // Builds the tree; with ParticleOrder::permute this is what moves the arrays. Call within `workers`.
   void build(Budget& budget);
   bool is_built() const { return built_; }
+  // Throws Error(invalid_argument) when the bound arrays are not those that the filter needs.
+  void check_filter(const Filter& filter) const;
+  // Which particles are drawn from the next build() or select() on; nullptr: all of them.
+  void set_filter(std::shared_ptr<const Filter> filter) { filter_ = std::move(filter); }
+  // Makes the selection of the built set anew; the tree stays. Call within the workers. Throws Error(over_budget).
+  void select(Budget& budget);
   // Forgets the arrays. What the index occupies is kept for the next step.
   void release();
 
   std::uint64_t item_count() const { return arrays_ ? arrays_->position.count : 0; }
   // How the tree of this step was made, and how many particles that moved.
   const PkdBuilt& how_built() const { return how_built_; }
+  // Particles that can be drawn, and those of them that the filter leaves.
   std::uint64_t drawn_count() const { return built_ ? tree_.count : 0; }
+  std::uint64_t shown_count() const { return built_ ? shown_.drawn : 0; }
+  bool shows(std::uint64_t item) const { return !bound_filter_ || bound_filter_->accepts(item); }
+  const BoundFilter* bound_filter() const { return bound_filter_ ? &*bound_filter_ : nullptr; }
+  // In the space of the arrays.
+  double shown_radius_max() const { return shown_.radius_max; }
   std::uint64_t borrowed_bytes() const;
   std::uint64_t copied_bytes() const { return copy_.bytes(); }
   std::uint64_t treelet_bytes() const { return treelet_nodes_.bytes(); }
@@ -72,7 +88,7 @@ class Particles : public Geometry {
   double particles_per_treelet() const;
   std::uint64_t index_bytes() const { return index32_.bytes() + index64_.bytes(); }
 
-  // World space, radii included; lower > upper when nothing is drawn.
+  // Of what the filter leaves: world space, radii included; lower > upper when nothing is drawn.
   void bounds(double lower[3], double upper[3]) const override;
 
   // Rays and hits in world space.
@@ -110,6 +126,9 @@ class Particles : public Geometry {
   // Settled before the tree, which has to be as fine as its treelets; their boxes are computed after it.
   void plan_treelets(const Budget& budget);
   void add_treelets(Budget& budget);
+  void apply_filter(Budget& budget);
+  // Of what a filter leaves, where that is little and fits into `room` bytes.
+  void add_copies(Budget& budget, std::uint64_t room);
   std::uint64_t treelet_room(const Budget& budget) const;
   void trace_first_hits(const kernels::Ray* rays, kernels::Hit* hits, std::size_t count) const;
   void trace_any_hits(const kernels::Ray* rays, std::uint8_t* occluded, std::size_t count) const;
@@ -126,10 +145,11 @@ class Particles : public Geometry {
   PkdBuilt how_built_;
   std::optional<ParticleArrays> arrays_;
   ColumnSet moved_;
-  // Bounds of the drawn centres. The box of the tree is a little larger and stays while they fit: with the longest side
-  // another one, or a plane moved, hardly a particle would be in place.
-  double lower_[3] = {};
-  double upper_[3] = {};
+  // Bounds of all centres of the tree, and of those that the filter leaves. The box of the tree is a little larger than
+  // the former and stays while they fit: with the longest side another one, or a plane moved, hardly a particle would
+  // be in place.
+  ScanResult all_ = nothing_found();
+  ScanResult shown_ = nothing_found();
   kernels::PkdBox<double> root_ = {{1.0, 1.0, 1.0}, {-1.0, -1.0, -1.0}};
   kernels::PkdTree tree_;  // in the space of the arrays: for integer positions, the lattice
   // Place in the tree -> item; with ParticleOrder::permute and on request: place now -> place when the step began.
@@ -138,11 +158,13 @@ class Particles : public Geometry {
   kernels::Treelets treelets_;  // none when the tree is traced alone
   BudgetVector<kernels::TreeletNode> treelet_nodes_;
   BudgetVector<std::byte> copy_;  // packed positions in tree order
+  std::shared_ptr<const Filter> filter_;
+  std::optional<BoundFilter> bound_filter_;  // while its selection is in force
+  ParticleSelection selection_;
+  ParticleCopies copies_;
 };
 
 // Smallest and largest finite value; component as in insitu_style. Call within the workers.
 ValueRange value_range(const kernels::ArrayView& view, std::uint32_t component);
-// The value that a style colours by: of the only component, of one component (1 to 4), or the length of a vector (0).
-double styled_value(const kernels::ArrayView& view, std::uint64_t item, std::uint32_t component);
 
 }  // namespace insitu

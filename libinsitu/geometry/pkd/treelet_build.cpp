@@ -4,6 +4,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -48,6 +49,19 @@ TreeletRun run_of_node(const Treelets& shape, unsigned level, std::uint64_t inde
   return run;
 }
 
+// Calls action(place) for every place of the run that is drawn.
+template <class Action>
+void each_drawn(const PkdTree& tree, std::uint64_t begin, std::uint64_t end, const Action& action) {
+  if (tree.selected.all()) {
+    for (std::uint64_t place = begin; place < end; ++place) action(place);
+    return;
+  }
+  for (; begin < end; begin += 64)
+    for (std::uint64_t bits = tree.selected.bits(begin, std::min<std::uint64_t>(64, end - begin)); bits != 0;
+         bits &= bits - 1)
+      action(begin + static_cast<std::uint64_t>(std::countr_zero(bits)));
+}
+
 // Of the spheres around the centres, in the coordinates of the tree.
 template <class Positions>
 Box box_of_run(const PkdTree& tree, const Positions& positions, const TreeletRun& run, double margin) {
@@ -59,13 +73,13 @@ Box box_of_run(const PkdTree& tree, const Positions& positions, const TreeletRun
     Key upper[3];
     std::fill_n(lower, 3, std::numeric_limits<Key>::infinity());
     std::fill_n(upper, 3, -std::numeric_limits<Key>::infinity());
-    for (std::uint64_t place = run.begin; place < end; ++place) {
+    each_drawn(tree, run.begin, end, [&](std::uint64_t place) {
       for (int c = 0; c < 3; ++c) {
         const Key key = positions.key(place, c);
         lower[c] = std::min(lower[c], key);
         upper[c] = std::max(upper[c], key);
       }
-    }
+    });
     const double wide = tree.radius.uniform + margin;
     for (int c = 0; c < 3; ++c) {
       box.lower[c] = static_cast<double>(lower[c]) - wide;
@@ -73,7 +87,7 @@ Box box_of_run(const PkdTree& tree, const Positions& positions, const TreeletRun
     }
     return box;
   }
-  for (std::uint64_t place = run.begin; place < end; ++place) {
+  each_drawn(tree, run.begin, end, [&](std::uint64_t place) {
     const double wide = tree.radius.value(tree.item(place)) + margin;
     double centre[3];
     positions.centre(place, centre);
@@ -81,7 +95,7 @@ Box box_of_run(const PkdTree& tree, const Positions& positions, const TreeletRun
       box.lower[c] = std::min(box.lower[c], centre[c] - wide);
       box.upper[c] = std::max(box.upper[c], centre[c] + wide);
     }
-  }
+  });
   return box;
 }
 

@@ -17,8 +17,9 @@ std::uint64_t treelet_bytes(std::uint64_t particles, unsigned depth);
 // needed. 0: none fit, or there are too few particles.
 unsigned treelet_depth(std::uint64_t particles, double particles_per_treelet, std::uint64_t most_bytes);
 
-// Computes all nodes of `shape`, with as many threads as the caller's TBB arena has. The tree must have been built with
-// leaves at most as long as its treelets, or the boxes are correct but large.
+// Computes all nodes of `shape`, around the particles that tree.selected leaves, with as many threads as the caller's
+// TBB arena has. The tree must have been built with leaves at most as long as its treelets, or the boxes are correct
+// but large.
 void build_treelets(const kernels::PkdTree& tree, const kernels::Treelets& shape, kernels::TreeletNode* nodes);
 
 }  // namespace insitu

@@ -19,6 +19,7 @@ struct ArrowSource {
   // A vector that is not finite cannot be drawn; one of no length can, as nothing.
   bool is_good(std::uint64_t item) const;
 
+  bool is_shown(std::uint64_t id) const { return points.is_shown(id / 2); }
   bool stick(std::uint64_t id, kernels::Stick& out) const;
   std::uint64_t shown_item(std::uint64_t id, double) const { return id / 2; }
   std::uint64_t color_item(std::uint64_t id, double) const { return id / 2; }

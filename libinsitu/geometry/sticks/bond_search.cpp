@@ -145,7 +145,8 @@ void find_bonds(Budget& budget, const ParticlePoints& points, const BondSearch& 
       double point[3];
       std::int32_t at[3];
       double image[3];
-      cell_of.data()[item] = points.point(item, point) ? grid.cell_of(point, at, image) : no_cell;
+      cell_of.data()[item] =
+          points.is_shown(item) && points.point(item, point) ? grid.cell_of(point, at, image) : no_cell;
     }
   });
   for (std::uint64_t item = 0; item < count; ++item)
@@ -160,7 +161,7 @@ void find_bonds(Budget& budget, const ParticlePoints& points, const BondSearch& 
     double from[3] = {};
     double image_from[3];
     std::int32_t at[3];
-    if (!points.point(item, from)) return;
+    if (cell_of.data()[item] == no_cell || !points.point(item, from)) return;
     grid.cell_of(from, at, image_from);
     const double radius = search.cutoff > 0.0 ? 0.0 : search.radius.value(item);
     grid.around(at, [&](std::uint32_t cell, const std::int32_t step[3]) {

@@ -57,6 +57,12 @@ bool BondSource::ends_of(std::uint64_t pair, Ends& ends) const {
   return true;
 }
 
+bool BondSource::is_filtered(std::uint64_t pair) const {
+  Ends ends;
+  return found == nullptr && points.filter != nullptr && ends_of(pair, ends) &&
+         !(points.is_shown(ends.item[0]) && points.is_shown(ends.item[1]));
+}
+
 bool BondSource::stick(std::uint64_t id, kernels::Stick& out) const {
   Ends ends;
   const bool second = id % 2 != 0;

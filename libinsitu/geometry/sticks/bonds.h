@@ -26,6 +26,10 @@ struct BondSource {
   kernels::StickEnds ends = kernels::StickEnds::round;
 
   std::uint64_t pair_count() const { return found != nullptr ? found_count : pairs.count; }
+  // The search for bonds has left out what a filter does.
+  bool is_shown(std::uint64_t id) const { return found != nullptr || !is_filtered(id / 2); }
+  // Both ends are there, but not both of them are drawn.
+  bool is_filtered(std::uint64_t pair) const;
   // False for an index out of range, twice the same one or the same place, a point that is not finite.
   bool stick(std::uint64_t id, kernels::Stick& out) const;
   // Pairs of the caller are shown by their place in his array, those found here by the particle at the nearer end.

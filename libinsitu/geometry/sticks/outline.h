@@ -10,6 +10,7 @@ struct OutlineSource {
   Cell cell;
   double radius = 0.0;
 
+  bool is_shown(std::uint64_t) const { return true; }
   // Edge 4 k + i runs along vector k from the i-th corner of the face across it.
   bool stick(std::uint64_t id, kernels::Stick& out) const {
     const auto k = static_cast<int>(id / 4);

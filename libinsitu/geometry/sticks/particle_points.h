@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "geometry/cell.h"
+#include "geometry/filter/filter.h"
 #include "kernels/pkd_tree.h"
 #include "kernels/views.h"
 
@@ -19,6 +20,7 @@ struct ParticlePoints {
   // Which of two particles at one place is shown: that of the set's tree.
   kernels::PreferItem prefer = nullptr;
   const void* prefer_context = nullptr;
+  const BoundFilter* filter = nullptr;  // of the set; nullptr: all particles are drawn
 
   std::uint64_t count() const { return position.count; }
 
@@ -37,6 +39,7 @@ struct ParticlePoints {
     return true;
   }
 
+  bool is_shown(std::uint64_t item) const { return filter == nullptr || filter->accepts(item); }
   bool prefers(std::uint64_t a, std::uint64_t b) const {
     return prefer != nullptr ? prefer(prefer_context, a, b) : a < b;
   }

@@ -1,5 +1,6 @@
 // Many sticks as one geometry. Where they stand is asked of a Source at every test, so that nothing is copied but the
 // tree over their boxes. A Source is a class with
+//   bool is_shown(std::uint64_t id) const;                        asked once, when the tree is built
 //   bool stick(std::uint64_t id, kernels::Stick& out) const;      false: there is nothing to draw
 //   std::uint64_t shown_item(std::uint64_t id, double along) const;   for the item channel; along: 0 to 1
 //   std::uint64_t color_item(std::uint64_t id, double along) const;
@@ -52,7 +53,7 @@ class Sticks final : public Geometry {
     tbb::parallel_for(std::uint64_t{0}, std::uint64_t{parts.size()}, [&](std::uint64_t p) {
       kernels::Stick stick;
       for (std::uint64_t id = p * part; id < std::min(end, (p + 1) * part); ++id) {
-        if (!source_.stick(id, stick)) continue;
+        if (!source_.is_shown(id) || !source_.stick(id, stick)) continue;
         parts[p].boxes.push_back(box_of(stick));
         parts[p].ids.push_back(static_cast<std::uint32_t>(id));
       }

@@ -215,7 +215,8 @@ typedef struct insitu_particles_desc {
   /* Most memory for treelets, as a part of the bytes of the positions: 0 = none, 0.15 = for 1.8 bytes per particle in
    * f32. Treelets are boxes around runs of some 16 particles: rays take half to three quarters of the time, and a
    * few large particles among many small ones cost little. Fewer, or none, are made when the share is too small or
-   * max_extra_bytes leaves no room; insitu_stats says what was made. */
+   * max_extra_bytes leaves no room; insitu_stats says what was made. Under a filter that leaves few particles of a run
+   * the treelets are fewer, and the share also holds copies of their centres, 16 bytes each, if it can. */
   double treelet_share;
 } insitu_particles_desc;
 
@@ -239,6 +240,42 @@ INSITU_API insitu_status insitu_particles_permutation(insitu_context context, in
 /* With PERMUTE and KEEP_PERMUTATION, after insitu_commit and before insitu_step_end: puts every record of every array
  * back where it was when the step began. The set is then absent until its next update. */
 INSITU_API insitu_status insitu_particles_restore_order(insitu_context context, insitu_geometry particles);
+
+enum { INSITU_FILTER_RANGE = 1, INSITU_FILTER_SET = 2, INSITU_FILTER_BOX = 3, INSITU_FILTER_PLANE = 4 };
+enum { INSITU_FILTER_NOT = 1u /* holds where the term would not */ };
+
+/* One condition on a particle. Members that its kind does not name are not read. */
+typedef struct insitu_filter_term {
+  uint32_t struct_size;
+  uint32_t kind;           /* INSITU_FILTER_* */
+  uint32_t flags;          /* INSITU_FILTER_NOT */
+  uint32_t component;      /* RANGE, SET: 0 = the value, or the length of a vector; 1 to 4 = that component */
+  const char* attribute;   /* RANGE, SET: name of the attribute; the type array is called "type" */
+  double range[2];         /* RANGE: smallest and largest value, inclusive; may be infinite. NaN is in no range */
+  const insitu_array* set; /* SET: 1 x integer, the values that are meant, in any order; copied during the call */
+  double lower[3];         /* BOX: holds for centres within, faces included, in world space; may be infinite */
+  double upper[3];
+  double plane[4];      /* PLANE: holds for centres with plane[0] x + plane[1] y + plane[2] z >= plane[3] */
+  uint32_t alternative; /* terms of the same number must all hold, of one number; all 0: every term must hold */
+  uint32_t reserved;    /* 0 */
+} insitu_filter_term;
+
+typedef struct insitu_filter {
+  uint32_t struct_size;
+  uint32_t term_count; /* at most 1024; 0 = no filter */
+  const insitu_filter_term* terms;
+} insitu_filter;
+
+/* Draws only those particles of a set for which the filter holds; NULL: all of them. Kept until changed, in force from
+ * the next insitu_commit, which may be a second one in the same step: the tree is not built again (docs/filters.md).
+ * Integers are compared as integers, whatever their size; floating point values are members of a set where they are
+ * whole numbers. Bounds and fitted cameras are those of the particles that are left; automatic radii and colour ranges
+ * those of all, so that nothing changes its look with a filter. Bonds are drawn where both ends are, arrows where their
+ * particle is. An unknown attribute name is an error at the next commit or at this call when arrays are bound; the
+ * message lists the valid names. Errors: invalid_argument, invalid_handle, unsupported (a set of floating point
+ * numbers), over_budget. */
+INSITU_API insitu_status insitu_particles_set_filter(insitu_context context, insitu_geometry particles,
+                                                     const insitu_filter* filter);
 
 enum { INSITU_COLOR_UNIFORM = 0, INSITU_COLOR_ATTRIBUTE = 1 };
 enum { INSITU_RANGE_AUTO = 0, INSITU_RANGE_FIXED = 1 };
@@ -510,6 +547,7 @@ typedef struct insitu_stats {
   uint64_t items_moved;       /* moves of particles, or of entries of an index, that this took */
   uint64_t treelets;          /* of all sets; 0 where they did not fit or were not asked for */
   uint64_t treelet_bytes;     /* what they occupy, a part of owned_bytes */
+  uint64_t items_filtered;    /* particles that could be drawn, but that filters leave out */
 } insitu_stats;
 
 INSITU_API insitu_status insitu_stats_get(insitu_context context, insitu_stats* out);
@@ -526,6 +564,8 @@ INSITU_API insitu_status insitu_stats_get(insitu_context context, insitu_stats* 
 INSITU_DEFINE_INIT(insitu_array)
 INSITU_DEFINE_INIT(insitu_array_report)
 INSITU_DEFINE_INIT(insitu_particles_desc)
+INSITU_DEFINE_INIT(insitu_filter_term)
+INSITU_DEFINE_INIT(insitu_filter)
 INSITU_DEFINE_INIT(insitu_style)
 INSITU_DEFINE_INIT(insitu_colormap_desc)
 INSITU_DEFINE_INIT(insitu_camera)

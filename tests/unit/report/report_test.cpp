@@ -29,6 +29,7 @@ StepReport full_report() {
   report.bytes_peak = 8192;
   report.items_total = 10;
   report.items_skipped = 3;
+  report.items_filtered = 4;
   report.pixels = 250000;
   report.samples = 1000000;
   report.pixels_over_error = 12;
@@ -49,7 +50,8 @@ TEST(Report, WholeLine) {
   EXPECT_EQ(to_json_line(full_report()),
             R"({"step":18446744073709551615,"time":0.1,"images":["frame_000042.png","frame \"42\".exr"],)"
             R"("seconds":{"build":0.5,"render":1.25,"write":0.0625,"total":2.0},)"
-            R"("bytes":{"borrowed":240,"copied":16,"owned":4096,"peak":8192},"items":{"total":10,"skipped":3},)"
+            R"("bytes":{"borrowed":240,"copied":16,"owned":4096,"peak":8192},)"
+            R"("items":{"total":10,"skipped":3,"filtered":4},)"
             R"("pixels":{"total":250000,"samples":1000000,"over_error":12},)"
             R"("trees":{"built":1,"repaired":2,"reused":4,"moved":7,"treelets":65536,"treelet_bytes":599232},)"
             R"("effects":[{"name":"camera","rays":1000000,"seconds":0.75},)"
@@ -60,7 +62,7 @@ TEST(Report, WholeLine) {
 TEST(Report, EmptyStep) {
   EXPECT_EQ(to_json_line(StepReport()),
             R"({"step":0,"time":0.0,"images":[],"seconds":{"build":0.0,"render":0.0,"write":0.0,"total":0.0},)"
-            R"("bytes":{"borrowed":0,"copied":0,"owned":0,"peak":0},"items":{"total":0,"skipped":0},)"
+            R"("bytes":{"borrowed":0,"copied":0,"owned":0,"peak":0},"items":{"total":0,"skipped":0,"filtered":0},)"
             R"("pixels":{"total":0,"samples":0,"over_error":0},)"
             R"("trees":{"built":0,"repaired":0,"reused":0,"moved":0,"treelets":0,"treelet_bytes":0},)"
             R"("effects":[],"warnings":[],"status":"ok"})");
@@ -143,7 +145,7 @@ void collect_members(const ordered_json& json, const std::string& prefix, std::s
 TEST(Report, ThePageListsExactlyTheMembers) {
   std::set<std::string> members;
   collect_members(ordered_json::parse(to_json_line(full_report())), "", members);
-  EXPECT_EQ(members.size(), 28u);
+  EXPECT_EQ(members.size(), 29u);
 
   std::ifstream page(INSITU_REPORT_PAGE);
   ASSERT_TRUE(page) << INSITU_REPORT_PAGE;

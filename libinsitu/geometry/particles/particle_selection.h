@@ -1,0 +1,30 @@
+// Which places of a built tree a filter has left: a bit each, and the bounds of these particles.
+#pragma once
+
+#include "core/budget.h"
+#include "geometry/filter/filter.h"
+#include "geometry/particles/particle_scan.h"
+#include "kernels/pkd_tree.h"
+
+namespace insitu {
+
+class ParticleSelection {
+ public:
+  // One pass over all places, with as many threads as the caller's TBB arena has. Throws Error(over_budget).
+  void build(Budget& budget, const kernels::PkdTree& tree, const BoundFilter& filter);
+  void clear();
+
+  // All of them before build(), and after clear().
+  const kernels::SelectedPlaces& places() const { return places_; }
+  const ScanResult& found() const { return found_; }
+  std::uint64_t bytes() const { return words_.bytes(); }
+
+ private:
+  unsigned thinning_of(std::uint64_t count) const;
+
+  BudgetVector<std::uint64_t> words_;  // all levels, one after another
+  kernels::SelectedPlaces places_;
+  ScanResult found_ = nothing_found();
+};
+
+}  // namespace insitu
