@@ -43,6 +43,8 @@ Style make_style(const insitu_style& description) {
     if (!(rgb[c] >= 0.0 && std::isfinite(rgb[c]))) refuse("color is negative or not finite");
   if (rgb[0] != 0.0 || rgb[1] != 0.0 || rgb[2] != 0.0)
     style.color = {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2]), 1.0f};
+  if (!(description.opacity >= 0.0 && description.opacity <= 1.0)) refuse("opacity is not between 0 and 1");
+  if (description.opacity != 0.0) style.opacity = static_cast<float>(description.opacity);
   return style;
 }
 
@@ -59,22 +61,34 @@ void Colors::check(const Style& style, const Particles& particles) {
 }
 
 Colors::Colors(const Style& style, const Particles& particles, const Colormap& map)
-    : map_(&map), component_(style.component), uniform_(style.color) {
+    : map_(&map), component_(style.component), uniform_(style.color), opacity_(style.opacity) {
   check(style, particles);
+  uniform_.a *= opacity_;
   if (!style.by_attribute) return;
   values_ = particles.attribute(style.attribute);
   if (map.kind() == ColormapKind::categorical) return;
   range_ = style.fixed_range ? ValueRange{style.range[0], style.range[1]} : value_range(*values_, component_);
 }
 
+bool Colors::are_transparent() const {
+  return values_ == nullptr ? uniform_.a < 1.0f : opacity_ < 1.0f || !map_->is_opaque();
+}
+
 Rgba Colors::of(std::uint64_t item) const {
   if (values_ == nullptr) return uniform_;
   const double value = styled_value(*values_, item, component_);
+  if (map_->is_bad(value)) return Colormap::bad_value;  // missing data stand out
+  Rgba color = of_value(value);
+  color.a *= opacity_;
+  return color;
+}
+
+Rgba Colors::of_value(double value) const {
   if (map_->kind() == ColormapKind::categorical) return map_->lookup(value);
   // One value everywhere: the middle of the map. A falling range turns the map round. Halves keep the difference
   // finite.
   const double extent = 0.5 * range_.high - 0.5 * range_.low;
-  return map_->lookup(extent == 0.0 && !std::isnan(value) ? 0.5 : (0.5 * value - 0.5 * range_.low) / extent);
+  return map_->lookup(extent == 0.0 ? 0.5 : (0.5 * value - 0.5 * range_.low) / extent);
 }
 
 }  // namespace insitu

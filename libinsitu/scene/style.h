@@ -5,6 +5,7 @@
 
 #include "geometry/particles/particles.h"
 #include "insitu/insitu.h"
+#include "kernels/opacity.h"
 #include "scene/colormap.h"
 
 namespace insitu {
@@ -18,6 +19,7 @@ struct Style {
   std::string colormap_name = "viridis";
   std::uint64_t own_map = 0;  // id of an insitu_colormap; 0 = the map of that name
   Rgba color{0.8f, 0.8f, 0.8f, 1.0f};
+  float opacity = 1.0f;  // times that of the map or colour
 };
 
 // Throws Error(invalid_argument); names the valid colour maps when the one asked for is unknown.
@@ -33,11 +35,21 @@ class Colors {
   Rgba of(std::uint64_t item) const;
   ValueRange range() const { return range_; }
 
+  // Whether anything in these colours may be seen through.
+  bool are_transparent() const;
+  // The opacities of the items, for as long as this object lives and stays where it is.
+  kernels::ItemOpacity opacity() const { return {&Colors::opacity_of, this}; }
+
  private:
+  static float opacity_of(const void* self, std::uint64_t item) { return static_cast<const Colors*>(self)->of(item).a; }
+
+  Rgba of_value(double value) const;  // without the style's own opacity
+
   const kernels::ArrayView* values_ = nullptr;  // nullptr: uniform
   const Colormap* map_;
   std::uint32_t component_;
   Rgba uniform_;
+  float opacity_;
   ValueRange range_{0.0, 1.0};
 };
 
