@@ -192,11 +192,9 @@ void Context::set_style(std::uint64_t id, const insitu_style& description) {
   GeometryObject& geometry = geometries_.get(id);
   const Style style = make_style(description);
   const Colormap& map = colormap_of(style);
-  const bool is_opaque = style.opacity == 1.0f && (!style.by_attribute || map.is_opaque());
-  if (geometry.glyphs && !is_opaque)
-    throw Error(INSITU_ERROR_UNSUPPORTED,
-                "style: bonds and vectors are opaque: opacity has to be 0 or 1, and so have "
-                "the opacities of the colour map to be 1");
+  check_map(style, map);
+  if (geometry.glyphs && is_transparent(style, map))
+    throw Error(INSITU_ERROR_UNSUPPORTED, "style: bonds and vectors are always opaque, and this style is not");
   const Particles& particles = geometry.glyphs ? particle_set(geometry.glyphs->set()).particles : geometry.particles;
   if (particles.is_bound()) Colors::check(style, particles);
   geometry.style = style;

@@ -1,7 +1,9 @@
 // How a geometry looks: what insitu_style describes, and what it comes to with the data of a step.
 #pragma once
 
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "geometry/particles/particles.h"
 #include "insitu/insitu.h"
@@ -19,11 +21,16 @@ struct Style {
   std::string colormap_name = "viridis";
   std::uint64_t own_map = 0;  // id of an insitu_colormap; 0 = the map of that name
   Rgba color{0.8f, 0.8f, 0.8f, 1.0f};
-  float opacity = 1.0f;  // times that of the map or colour
+  float opacity = 1.0f;                                   // times that of the map or colour
+  std::shared_ptr<const std::vector<float>> opacity_map;  // times this, evenly spaced over the map; may be missing
 };
 
 // Throws Error(invalid_argument); names the valid colour maps when the one asked for is unknown.
 Style make_style(const insitu_style& description);
+// What only the map that a style means can tell. Throws Error(invalid_argument).
+void check_map(const Style& style, const Colormap& map);
+// Whether anything in these colours may be seen through.
+bool is_transparent(const Style& style, const Colormap& map);
 
 // Colours of a geometry in one step; borrows its arrays and the map.
 class Colors {
@@ -35,8 +42,7 @@ class Colors {
   Rgba of(std::uint64_t item) const;
   ValueRange range() const { return range_; }
 
-  // Whether anything in these colours may be seen through.
-  bool are_transparent() const;
+  bool are_transparent() const { return are_transparent_; }
   // The opacities of the items, for as long as this object lives and stays where it is.
   kernels::ItemOpacity opacity() const { return {&Colors::opacity_of, this}; }
 
@@ -50,6 +56,8 @@ class Colors {
   std::uint32_t component_;
   Rgba uniform_;
   float opacity_;
+  std::shared_ptr<const std::vector<float>> opacity_map_;
+  bool are_transparent_;
   ValueRange range_{0.0, 1.0};
 };
 

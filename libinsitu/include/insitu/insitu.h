@@ -254,6 +254,10 @@ typedef struct insitu_style {
   insitu_colormap own_map; /* used instead of `colormap` when its id is not 0 */
   double color[3];         /* linear RGB 0..1 of INSITU_COLOR_UNIFORM; all 0 = 0.8 grey */
   double opacity;          /* 0..1, factor on the opacity of the own map, or of the colour; 0 = 1: opaque */
+  /* One more factor, by value: opacities of 0..1 evenly spaced over the colour map, linear in between; copied. For
+   * maps that are continuous, the built-in ones too; NULL = 1 everywhere. */
+  const double* opacity_map;
+  uint64_t opacity_map_count; /* at most 65536 */
 } insitu_style;
 
 /* How a geometry looks; kept until changed. Particles of less than full opacity let through what is behind them
