@@ -50,6 +50,8 @@ struct Options {
   std::string color;
   std::string colormap;
   std::optional<std::array<double, 2>> range;
+  double opacity = 1.0;
+  std::vector<double> opacity_map;  // evenly spaced over the colour map; empty: 1 everywhere
   std::string radius;
   double radius_scale = 1.0;
   double treelet_share = 0.0;            // of the bytes of the positions
