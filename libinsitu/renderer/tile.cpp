@@ -176,11 +176,17 @@ std::uint64_t TileRenderer::first_occlusion_ray(const Sample& sample) const {
 }
 
 void TileRenderer::trace_stream() {
-  arriving_.resize(stream_.size());
-  if (scene_.is_transparent()) return scene_.transmittances(stream_.data(), arriving_.data(), stream_.size());
-  occluded_.resize(stream_.size());
-  scene_.any_hits(stream_.data(), occluded_.data(), stream_.size());
-  for (std::size_t i = 0; i < stream_.size(); ++i) arriving_[i] = occluded_[i] != 0 ? 0.0 : 1.0;
+  if (scene_.is_transparent()) {
+    arriving_.resize(stream_.size());
+    scene_.transmittances(stream_.data(), arriving_.data(), stream_.size());
+  } else {
+    occluded_.resize(stream_.size());
+    scene_.any_hits(stream_.data(), occluded_.data(), stream_.size());
+  }
+}
+
+double TileRenderer::arriving(std::size_t ray) const {
+  return scene_.is_transparent() ? arriving_[ray] : 1.0 - occluded_[ray];
 }
 
 // Ambient occlusion: the share of the hemisphere, weighted by the cosine to the normal, in which nothing is hit within
@@ -209,11 +215,11 @@ void TileRenderer::occlude_ambient() {
     lit_.push_back(i);
   }
   trace_stream();
-  const double* arriving = arriving_.data();
+  std::size_t ray = 0;
   for (const std::uint32_t i : lit_) {
     double blocked = 0.0;
     const std::uint32_t rays = occlusion_rays(samples_[i], samples_[i].index >= settings_.samples_per_pixel);
-    for (std::uint32_t k = 0; k < rays; ++k) blocked += 1.0 - *arriving++;
+    for (std::uint32_t k = 0; k < rays; ++k) blocked += 1.0 - arriving(ray++);
     samples_[i].ambient_visible = 1.0 - blocked / rays;
   }
   costs_.ambient_occlusion.rays += stream_.size();
@@ -237,7 +243,6 @@ void TileRenderer::light_directly() {
       set_ray(ray, s.point + s.t_epsilon * s.normal, light.towards);
       stream_.push_back(ray);
     }
-    arriving_.assign(lit_.size(), 1.0);
     if (plan_.shadows) {
       trace_stream();
       costs_.shadows.rays += stream_.size();
@@ -245,7 +250,8 @@ void TileRenderer::light_directly() {
     }
     for (std::size_t i = 0; i < lit_.size(); ++i) {
       Sample& s = samples_[lit_[i]];
-      if (arriving_[i] > 0.0) s.light += arriving_[i] * (light.radiance * glm::dot(s.normal, light.towards));
+      const double share = plan_.shadows ? arriving(i) : 1.0;
+      if (share > 0.0) s.light += share * (light.radiance * glm::dot(s.normal, light.towards));
     }
   }
 }

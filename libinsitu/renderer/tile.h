@@ -46,6 +46,7 @@ class TileRenderer {
   void locate(Sample& sample) const;
   void light_samples();
   void trace_stream();
+  double arriving(std::size_t ray) const;
   std::uint32_t occlusion_rays(const Sample& sample, bool is_beyond_least) const;
   std::uint64_t first_occlusion_ray(const Sample& sample) const;
   void occlude_ambient();
@@ -75,7 +76,7 @@ class TileRenderer {
   std::vector<SceneRay> stream_;
   std::vector<SceneHit> hits_;
   std::vector<std::uint8_t> occluded_;
-  std::vector<double> arriving_;    // along the stream's rays, the share of light
+  std::vector<double> arriving_;    // where something is transparent: along the stream's rays, the share of light
   std::vector<std::uint32_t> lit_;  // places in samples_ that the stream's rays belong to
   std::vector<PixelSamples> pixels_;
   std::vector<std::uint32_t> wanted_;  // samples per pixel
