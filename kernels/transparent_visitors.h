@@ -80,9 +80,7 @@ class TransmittanceVisitor {
   static constexpr bool one_of_coincident = false;
 
   TransmittanceVisitor(const Ray& ray, const ItemOpacity& opacity, OpticalDepth depth)
-      : depth_(depth), t_max_(ray.t_max), opacity_(opacity) {
-    counted_.fill(no_item);
-  }
+      : depth_(depth), t_max_(ray.t_max), opacity_(opacity) {}
 
   double t_limit() const { return t_max_; }
   OpticalDepth depth() const { return depth_; }
@@ -96,16 +94,21 @@ class TransmittanceVisitor {
     if (!is_new(item)) return false;
     const float opacity = opacity_.of(item);
     if (met.from_inside && opacity < 1.0f) return false;
-    depth_ += optical_depth(opacity);
+    // Many particles have the opacity of the one before: logarithms are slow.
+    if (opacity != last_opacity_) {
+      last_opacity_ = opacity;
+      last_depth_ = optical_depth(opacity);
+    }
+    depth_ += last_depth_;
     return depth_ >= opaque_depth;
   }
 
  private:
   // The last vector of a leaf may overlap the one before it: whoever comes twice does so within the length of a leaf.
   bool is_new(std::uint64_t item) {
-    if (std::find(counted_.begin(), counted_.end(), item) != counted_.end()) return false;
-    counted_[next_] = item;
-    next_ = (next_ + 1) % counted_.size();
+    const auto end = counted_.begin() + static_cast<std::ptrdiff_t>(std::min(count_, counted_.size()));
+    if (std::find(counted_.begin(), end, item) != end) return false;
+    counted_[count_++ % counted_.size()] = item;
     return true;
   }
 
@@ -113,7 +116,9 @@ class TransmittanceVisitor {
   double t_max_;
   const ItemOpacity& opacity_;
   std::array<std::uint64_t, pkd_leaf_size> counted_;
-  std::size_t next_ = 0;
+  std::size_t count_ = 0;
+  float last_opacity_ = 0.0f;
+  OpticalDepth last_depth_ = 0;
 };
 
 }  // namespace insitu::kernels
