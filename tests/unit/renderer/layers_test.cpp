@@ -173,6 +173,38 @@ TEST(Layers, OfOpacityZeroAreNotThere) {
   EXPECT_EQ(picture.costs.layers, 2u);
 }
 
+// Integer positions: distances in the lattice are not those in the world. More layers than a list holds.
+TEST(Layers, OfIntegerPositionsAreThoseOfTheWorld) {
+  constexpr int count = 70;
+  std::vector<std::int32_t> x;
+  for (int i = 0; i < count; ++i) x.insert(x.end(), {7, -3, 4 * i});
+  Particles particles("lattice", ParticleOrder::index, false);
+  ParticleArrays arrays;
+  arrays.position = positions_of(x);
+  arrays.position_scale = 0.037;
+  const double origin[3] = {-7 * 0.037, 3 * 0.037, -2.0};
+  std::copy_n(origin, 3, arrays.position_origin);
+  arrays.radius_default = 0.05;
+  particles.bind(std::move(arrays));
+  Budget budget(0);
+  particles.build(budget);
+  Style style;
+  style.color = {1.0f, 1.0f, 1.0f, 1.0f};
+  style.opacity = 0.03f;
+  Scene scene;
+  scene.add(particles, Colors(style, particles, *builtin_colormap("viridis")));
+  scene.commit();
+  RenderSettings settings = down_the_axis();
+  settings.camera.eye = {0.0, 0.0, 12.0};
+  settings.background = {0.0, 0.0, 0.0, 0.0};
+  const Picture picture = render(scene, settings, 1, 1);
+  EXPECT_EQ(picture.costs.layers, static_cast<std::uint64_t>(count));
+  EXPECT_EQ(picture.frame.item[0], static_cast<std::uint64_t>(count - 1));
+  EXPECT_FLOAT_EQ(picture.frame.depth[0], static_cast<float>(14.0 - 4 * (count - 1) * 0.037 - 0.05));
+  EXPECT_NEAR(picture.alpha(0, 0), 1.0 - std::pow(1.0 - static_cast<double>(0.03f), count), 1e-6);
+  EXPECT_NEAR(picture.color(0, 0).x, picture.alpha(0, 0), 1e-6);
+}
+
 // At the same distance: first the set that was made first, within a set what is preferred when it is opaque.
 TEST(Layers, AtOnePlaceHaveAnOrder) {
   const Ball green{{0.0, 0.0, 0.0}, 1.0, 0.5};
