@@ -1,5 +1,7 @@
 #include "kernels/pkd_reference.h"
 
+#include <algorithm>
+
 #include "kernels/pkd_positions.h"
 #include "kernels/sphere.h"
 
@@ -80,6 +82,39 @@ std::vector<Span> reference_all_hits(const PkdTree& tree, const Ray& ray) {
       spans.push_back({roots.enter, roots.leave, item.id});
   }
   return spans;
+}
+
+std::vector<EnteredItem> reference_entries(const PkdTree& tree, const Ray& ray, const ItemOpacity& opacity) {
+  std::vector<EnteredItem> entries;
+  for (std::uint64_t place = 0; place < tree.count; ++place) {
+    const Item item = item_at(tree, place);
+    const SphereRoots roots = sphere_roots(ray.origin, ray.direction, item.centre, item.radius);
+    const bool is_opaque = opacity.of(item.id) >= 1.0f;
+    if (item.id == ray.exclude || !roots.hit || !(opacity.of(item.id) > 0.0f)) continue;
+    double t = roots.enter;
+    if (is_opaque && !(t > ray.t_min)) t = roots.leave;
+    if (t > ray.t_min && t <= ray.t_max) entries.push_back({t, item.id, 0, is_opaque});
+  }
+  std::sort(entries.begin(), entries.end(), [&tree](const EnteredItem& a, const EnteredItem& b) {
+    if (a.t != b.t) return a.t < b.t;
+    return tree.prefer != nullptr ? tree.prefer(tree.prefer_context, a.item, b.item) : a.item < b.item;
+  });
+  const auto end = std::find_if(entries.begin(), entries.end(), [](const EnteredItem& e) { return e.is_opaque; });
+  if (end != entries.end()) entries.erase(end + 1, entries.end());
+  return entries;
+}
+
+OpticalDepth reference_optical_depth(const PkdTree& tree, const Ray& ray, const ItemOpacity& opacity) {
+  OpticalDepth sum = 0;
+  for (std::uint64_t place = 0; place < tree.count; ++place) {
+    const Item item = item_at(tree, place);
+    const SphereRoots roots = sphere_roots(ray.origin, ray.direction, item.centre, item.radius);
+    if (item.id == ray.exclude || !roots.hit) continue;
+    const bool is_opaque = opacity.of(item.id) >= 1.0f;
+    const double t = is_opaque && !(roots.enter > ray.t_min) ? roots.leave : roots.enter;
+    if (t > ray.t_min && t <= ray.t_max) sum += optical_depth(opacity.of(item.id));
+  }
+  return sum;
 }
 
 std::uint64_t find_broken_invariant(const PkdTree& tree) {

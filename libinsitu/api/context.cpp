@@ -202,7 +202,10 @@ void Context::set_filter(std::uint64_t id, const insitu_filter* description) {
 void Context::set_style(std::uint64_t id, const insitu_style& description) {
   GeometryObject& geometry = geometries_.get(id);
   const Style style = make_style(description);
-  colormap_of(style);
+  const Colormap& map = colormap_of(style);
+  check_map(style, map);
+  if (geometry.glyphs && is_transparent(style, map))
+    throw Error(INSITU_ERROR_UNSUPPORTED, "style: bonds and vectors are always opaque, and this style is not");
   const Particles& particles = geometry.glyphs ? particle_set(geometry.glyphs->set()).particles : geometry.particles;
   if (particles.is_bound()) Colors::check(style, particles);
   geometry.style = style;

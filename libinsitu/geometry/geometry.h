@@ -16,6 +16,8 @@ struct Surface {
   std::uint64_t color_item;  // the item of the particles whose colour it has
 };
 
+class TransparentGeometry;
+
 class Geometry {
  public:
   virtual ~Geometry() = default;
@@ -28,6 +30,8 @@ class Geometry {
   virtual void any_hits(const kernels::Ray* rays, std::uint8_t* occluded, std::size_t count) const = 0;
   // `item` as a hit has it. Once per hit that is shaded, which costs a hundred times as much.
   virtual Surface surface(std::uint64_t item, const double point[3]) const = 0;
+  // As what it can be seen through (transparent_geometry.h); nullptr: it is opaque, whatever its colours say.
+  virtual const TransparentGeometry* transparent() const { return nullptr; }
 };
 
 }  // namespace insitu

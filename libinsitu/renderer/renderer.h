@@ -35,12 +35,14 @@ struct RenderCosts {
   PassCost camera;
   PassCost shadows;
   PassCost ambient_occlusion;
+  std::uint64_t layers = 0;  // that camera rays went through, where something is transparent
   std::uint64_t pixels = 0;
   std::uint64_t pixels_over_error = 0;  // with the most samples and still above pixel_error
   RenderCosts& operator+=(const RenderCosts& other) {
     camera += other.camera;
     shadows += other.shadows;
     ambient_occlusion += other.ambient_occlusion;
+    layers += other.layers;
     pixels += other.pixels;
     pixels_over_error += other.pixels_over_error;
     return *this;

@@ -27,6 +27,7 @@ double rounding_of(const glm::dvec3& point, const SceneRay& ray, double t, doubl
 
 // Traced at a time: enough for the packets and streams of the kernels, at about 100 bytes a ray.
 constexpr std::size_t most_samples = 1024;
+constexpr std::size_t most_layered_samples = 256;  // each may come to dozens of layers at a time
 constexpr std::size_t most_occlusion_rays = 16384;
 
 // Bits 0, 2, 4 and 6 of i: with those of i / 2 the coordinates of point i of a Morton curve over 16 x 16 pixels.
@@ -41,7 +42,8 @@ TileRenderer::TileRenderer(const Scene& scene, const RenderSettings& settings, c
       plan_(plan),
       frame_(frame),
       rays_(settings.camera, static_cast<double>(frame.width) / static_cast<double>(frame.height)),
-      batch_samples_(std::clamp<std::size_t>(most_occlusion_rays / std::max(plan.ao_samples, 1u), 16, most_samples)) {}
+      batch_samples_(std::clamp<std::size_t>(most_occlusion_rays / std::max(plan.ao_samples, 1u), 16,
+                                             scene.is_transparent() ? most_layered_samples : most_samples)) {}
 
 void TileRenderer::render(std::uint32_t tile_x, std::uint32_t tile_y) {
   x0_ = tile_x * tile_edge_px;
@@ -92,6 +94,7 @@ void TileRenderer::aim(std::uint32_t pixel, std::uint32_t index) {
   Sample& s = samples_.emplace_back();
   s.pixel = pixel;
   s.index = index;
+  s.weight = 1.0;
   s.x = x0_ + pixel % width_;
   s.y = y0_ + pixel / width_;
   // Where all pixels have the same few places, what lies between these places is missed by all of them, and none gives
@@ -109,11 +112,19 @@ void TileRenderer::aim(std::uint32_t pixel, std::uint32_t index) {
 
 void TileRenderer::trace_batch() {
   trace_camera();
+  if (scene_.is_transparent()) {
+    composite_layers();
+  } else {
+    light_samples();
+    shade();
+    keep_channels();
+  }
+  samples_.clear();
+}
+
+void TileRenderer::light_samples() {
   if (plan_.ao_samples > 0) occlude_ambient();
   light_directly();
-  shade();
-  keep_channels();
-  samples_.clear();
 }
 
 void TileRenderer::trace_camera() {
@@ -125,7 +136,7 @@ void TileRenderer::trace_camera() {
   scene_.first_hits(stream_.data(), hits_.data(), count);
   for (std::size_t i = 0; i < count; ++i) {
     samples_[i].hit = hits_[i];
-    if (hits_[i].found()) locate(samples_[i]);
+    if (hits_[i].found() && !scene_.is_transparent()) locate(samples_[i]);
   }
   costs_.camera.rays += count;
   costs_.camera.seconds += watch.seconds();
@@ -151,15 +162,31 @@ void TileRenderer::locate(Sample& sample) const {
 }
 
 // Beyond the least samples a pixel is averaged over many, each of which may be noisier: a quarter of the occlusion rays
-// leaves the same error for less.
-std::uint32_t TileRenderer::occlusion_rays(const Sample& sample) const {
-  return sample.index < settings_.samples_per_pixel ? plan_.ao_samples : (plan_.ao_samples + 3) / 4;
+// leaves the same error for less. So it is with a layer, whose error counts by its weight: with numbers in proportion
+// to the weights, all layers of a ray together are as noisy as an opaque surface.
+std::uint32_t TileRenderer::occlusion_rays(const Sample& sample, bool is_beyond_least) const {
+  const std::uint32_t rays = is_beyond_least ? (plan_.ao_samples + 3) / 4 : plan_.ao_samples;
+  return static_cast<std::uint32_t>(std::ceil(rays * sample.weight));
 }
 
-// All occlusion rays of a pixel are one sequence.
+// All occlusion rays of a pixel, in layers at the same place, are one sequence.
 std::uint64_t TileRenderer::first_occlusion_ray(const Sample& sample) const {
   const std::uint64_t least = std::min(sample.index, settings_.samples_per_pixel);
-  return least * plan_.ao_samples + (sample.index - least) * occlusion_rays(sample);
+  return least * occlusion_rays(sample, false) + (sample.index - least) * occlusion_rays(sample, true);
+}
+
+void TileRenderer::trace_stream() {
+  if (scene_.is_transparent()) {
+    arriving_.resize(stream_.size());
+    scene_.transmittances(stream_.data(), arriving_.data(), stream_.size());
+  } else {
+    occluded_.resize(stream_.size());
+    scene_.any_hits(stream_.data(), occluded_.data(), stream_.size());
+  }
+}
+
+double TileRenderer::arriving(std::size_t ray) const {
+  return scene_.is_transparent() ? arriving_[ray] : 1.0 - occluded_[ray];
 }
 
 // Ambient occlusion: the share of the hemisphere, weighted by the cosine to the normal, in which nothing is hit within
@@ -172,28 +199,28 @@ void TileRenderer::occlude_ambient() {
   for (std::uint32_t i = 0; i < samples_.size(); ++i) {
     const Sample& s = samples_[i];
     if (!s.hit.found()) continue;
-    const glm::dvec2 noise = pixel_noise(s.x, s.y, purpose, plan_.seed);
+    const glm::dvec2 noise = pixel_noise(s.x, s.y, s.layer << 8 | purpose, plan_.seed);
     SceneRay ray;
     ray.exclude_geometry = s.hit.geometry;
     ray.ray.exclude = s.hit.item;
     ray.ray.t_min = s.t_epsilon;
     ray.ray.t_max = plan_.ao_radius;
     const std::uint64_t first = first_occlusion_ray(s);
-    for (std::uint32_t k = 0; k < occlusion_rays(s); ++k) {
+    const std::uint32_t rays = occlusion_rays(s, s.index >= settings_.samples_per_pixel);
+    for (std::uint32_t k = 0; k < rays; ++k) {
       const glm::dvec2 u = shifted(r2_point(first + k), noise);
       set_ray(ray, s.point + s.t_epsilon * s.normal, cosine_direction(s.normal, u));
       stream_.push_back(ray);
     }
     lit_.push_back(i);
   }
-  occluded_.resize(stream_.size());
-  scene_.any_hits(stream_.data(), occluded_.data(), stream_.size());
-  const std::uint8_t* occluded = occluded_.data();
+  trace_stream();
+  std::size_t ray = 0;
   for (const std::uint32_t i : lit_) {
-    std::uint32_t blocked = 0;
-    const std::uint32_t rays = occlusion_rays(samples_[i]);
-    for (std::uint32_t k = 0; k < rays; ++k) blocked += *occluded++;
-    samples_[i].ambient_visible = 1.0 - static_cast<double>(blocked) / rays;
+    double blocked = 0.0;
+    const std::uint32_t rays = occlusion_rays(samples_[i], samples_[i].index >= settings_.samples_per_pixel);
+    for (std::uint32_t k = 0; k < rays; ++k) blocked += 1.0 - arriving(ray++);
+    samples_[i].ambient_visible = 1.0 - blocked / rays;
   }
   costs_.ambient_occlusion.rays += stream_.size();
   costs_.ambient_occlusion.seconds += watch.seconds();
@@ -216,37 +243,40 @@ void TileRenderer::light_directly() {
       set_ray(ray, s.point + s.t_epsilon * s.normal, light.towards);
       stream_.push_back(ray);
     }
-    occluded_.assign(lit_.size(), 0);
     if (plan_.shadows) {
-      scene_.any_hits(stream_.data(), occluded_.data(), stream_.size());
+      trace_stream();
       costs_.shadows.rays += stream_.size();
       costs_.shadows.seconds += watch.seconds();
     }
     for (std::size_t i = 0; i < lit_.size(); ++i) {
       Sample& s = samples_[lit_[i]];
-      if (occluded_[i] == 0) s.light += light.radiance * glm::dot(s.normal, light.towards);
+      const double share = plan_.shadows ? arriving(i) : 1.0;
+      if (share > 0.0) s.light += share * (light.radiance * glm::dot(s.normal, light.towards));
     }
   }
+}
+
+glm::dvec3 TileRenderer::radiance(const Sample& sample) const {
+  const Rgba color = scene_.entries()[sample.hit.geometry].colors.of(sample.color_item);
+  const glm::dvec3 light = plan_.ambient * sample.ambient_visible + sample.light;
+  return glm::dvec3(color.r, color.g, color.b) * light;
+}
+
+// Premultiplied.
+glm::dvec4 TileRenderer::background() const {
+  const glm::dvec4& back = settings_.background;
+  return {back.r * back.a, back.g * back.a, back.b * back.a, back.a};
 }
 
 void TileRenderer::shade() {
-  const glm::dvec4& back = settings_.background;
-  const glm::dvec4 background(back.r * back.a, back.g * back.a, back.b * back.a, back.a);
-  for (const Sample& s : samples_) {
-    if (!s.hit.found()) {
-      pixels_[s.pixel].add(background);
-      continue;
-    }
-    const Rgba color = scene_.entries()[s.hit.geometry].colors.of(s.color_item);
-    const glm::dvec3 light = plan_.ambient * s.ambient_visible + s.light;
-    pixels_[s.pixel].add(glm::dvec4(glm::dvec3(color.r, color.g, color.b) * light, 1.0));
-  }
+  for (const Sample& s : samples_) pixels_[s.pixel].add(s.hit.found() ? glm::dvec4(radiance(s), 1.0) : background());
 }
 
-// Depth and the like have no meaningful average: they are those of the first sample, in the middle of the pixel.
+// Depth and the like have no meaningful average: they are those of the first sample, in the middle of the pixel, and of
+// its first layer.
 void TileRenderer::keep_channels() {
   for (const Sample& s : samples_) {
-    if (s.index != 0 || !s.hit.found()) continue;
+    if (s.index != 0 || s.layer != 0 || !s.hit.found()) continue;
     const std::size_t at = std::size_t{s.y} * frame_.width + s.x;
     if (!frame_.depth.empty()) frame_.depth[at] = static_cast<float>(s.hit.t);
     if (!frame_.item.empty()) frame_.item[at] = s.item;

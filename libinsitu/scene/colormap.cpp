@@ -67,10 +67,18 @@ Colormap Colormap::from_srgb(ColormapKind kind, std::span<const double> rgba) {
   return Colormap(kind, std::move(table));
 }
 
+Colormap::Colormap(ColormapKind kind, std::vector<Rgba> table)
+    : kind_(kind),
+      table_(std::move(table)),
+      is_opaque_(std::all_of(table_.begin(), table_.end(), [](const Rgba& color) { return color.a >= 1.0f; })) {}
+
+bool Colormap::is_bad(double value) const {
+  return std::isnan(value) || (kind_ == ColormapKind::categorical && std::isinf(value));
+}
+
 Rgba Colormap::lookup(double value) const {
-  if (std::isnan(value)) return bad_value;
+  if (is_bad(value)) return bad_value;
   if (kind_ == ColormapKind::categorical) {
-    if (std::isinf(value)) return bad_value;
     const double count = static_cast<double>(table_.size());
     double index = std::fmod(std::floor(value), count);  // exact, whatever the magnitude
     if (index < 0.0) index += count;

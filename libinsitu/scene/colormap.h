@@ -31,6 +31,10 @@ class Colormap {
   // NaN, and with a categorical map an infinity, is bad_value.
   Rgba lookup(double value) const;
 
+  // What lookup has no colour for.
+  bool is_bad(double value) const;
+  bool is_opaque() const { return is_opaque_; }
+
   ColormapKind kind() const { return kind_; }
   size_t table_size() const { return table_.size(); }
 
@@ -38,10 +42,11 @@ class Colormap {
   static constexpr Rgba bad_value{0.4f, 0.1f, 0.4f, 1.0f};
 
  private:
-  Colormap(ColormapKind kind, std::vector<Rgba> table) : kind_(kind), table_(std::move(table)) {}
+  Colormap(ColormapKind kind, std::vector<Rgba> table);
 
   ColormapKind kind_;
   std::vector<Rgba> table_;  // continuous: 1024 steps or more; categorical: one entry per colour
+  bool is_opaque_;
 };
 
 // "viridis", "inferno", "coolwarm", "categorical", "elements": the order in which messages list them.

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernels/slabs.h"
 #include "scene/embree_bridge.h"
+#include "scene/entry_rays.h"
 
 namespace insitu {
 namespace {
@@ -13,13 +13,6 @@ namespace {
 // 1024 and 4096 differed by less than what repeated runs do, with one and with a few sets; with 27, 256 took a sixth
 // longer.
 constexpr std::size_t batch = 1024;
-
-kernels::Ray ray_for(const SceneRay& ray, std::uint32_t geometry, const glm::dvec3& shift) {
-  kernels::Ray own = ray.ray;
-  for (int c = 0; c < 3; ++c) own.origin[c] -= shift[c];
-  if (ray.exclude_geometry != geometry) own.exclude = kernels::no_item;
-  return own;
-}
 
 // Nearer, or as near and of an entry that was added earlier.
 void keep_better(SceneHit& best, const kernels::Hit& hit, std::uint32_t geometry) {
@@ -36,6 +29,7 @@ struct FirstHitQuery {
 double visit_first(void* state, std::uint32_t geometry) {
   const auto* query = static_cast<const FirstHitQuery*>(state);
   const Scene::Entry& entry = (*query->entries)[geometry];
+  if (entry.see_through != nullptr) return query->hit->t;
   kernels::Hit hit;
   kernels::Ray ray = ray_for(*query->ray, geometry, entry.shift);
   ray.t_max = std::min(ray.t_max, query->hit->t);
@@ -53,6 +47,7 @@ struct AnyHitQuery {
 double visit_any(void* state, std::uint32_t geometry) {
   auto* query = static_cast<AnyHitQuery*>(state);
   const Scene::Entry& entry = (*query->entries)[geometry];
+  if (entry.see_through != nullptr) return query->ray->ray.t_max;
   const kernels::Ray ray = ray_for(*query->ray, geometry, entry.shift);
   entry.geometry->any_hits(&ray, &query->occluded, 1);
   return query->occluded != 0 ? -1.0 : ray.t_max;
@@ -86,13 +81,6 @@ class VisitOrder {
   std::size_t count_;
   std::uint32_t order_[Scene::most_in_turn];
 };
-
-bool meets(const SceneRay& ray, const Bounds& box, double t_max) {
-  const kernels::RaySlabs slabs(ray.ray.origin, ray.ray.direction);
-  const double lower[3] = {box.lower.x, box.lower.y, box.lower.z};
-  const double upper[3] = {box.upper.x, box.upper.y, box.upper.z};
-  return slabs.enter(lower, upper, ray.ray.t_min, t_max) < std::numeric_limits<double>::infinity();
-}
 
 // A batch of rays through every entry, or those of them that meet its box.
 class InTurn {
@@ -129,7 +117,7 @@ class InTurn {
   std::size_t gather(std::uint32_t g, const SceneRay* rays, std::size_t count, Wanted&& wanted) {
     // One geometry alone finds out faster itself.
     const bool alone = entries_.size() == 1;
-    if (entries_[g].bounds.empty()) return 0;
+    if (entries_[g].bounds.empty() || entries_[g].see_through != nullptr) return 0;
     std::size_t n = 0;
     for (std::size_t i = 0; i < count; ++i) {
       if (!alone && !wanted(i)) continue;
@@ -154,10 +142,11 @@ Scene::~Scene() = default;
 void Scene::clear() {
   entries_.clear();
   bounds_ = {};
+  is_transparent_ = false;
 }
 
 void Scene::add(const Geometry& geometry, const Colors& colors, const glm::dvec3& shift) {
-  Entry entry{&geometry, colors, {}, shift};
+  Entry entry{&geometry, colors, {}, shift, nullptr};
   double lower[3];
   double upper[3];
   geometry.bounds(lower, upper);
@@ -171,6 +160,8 @@ void Scene::add(const Geometry& geometry, const Colors& colors, const glm::dvec3
     entry.bounds.upper += shift + 1e-14 * largest;
   }
   bounds_.include(entry.bounds);
+  if (colors.are_transparent()) entry.see_through = geometry.transparent();
+  is_transparent_ = is_transparent_ || entry.see_through != nullptr;
   entries_.push_back(entry);
 }
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "geometry/geometry.h"
+#include "geometry/transparent_geometry.h"
 #include "kernels/ray.h"
 #include "scene/camera.h"
 #include "scene/style.h"
@@ -38,6 +38,7 @@ class Scene {
     Colors colors;
     Bounds bounds;  // where it is drawn
     glm::dvec3 shift{0.0};
+    const TransparentGeometry* see_through = nullptr;  // the geometry, when its colours let something pass
   };
 
   void clear();
@@ -49,9 +50,17 @@ class Scene {
   const std::vector<Entry>& entries() const { return entries_; }
   const Bounds& bounds() const { return bounds_; }
 
-  // Hits with t_min < t <= t_max. `hits` and `occluded` are overwritten.
+  // Whether any entry can be seen through. Without one, first and any hits are all that there is to a ray.
+  bool is_transparent() const { return is_transparent_; }
+
+  // Hits with t_min < t <= t_max of what cannot be seen through. `hits` and `occluded` are overwritten.
   void first_hits(const SceneRay* rays, SceneHit* hits, std::size_t count) const;
   void any_hits(const SceneRay* rays, std::uint8_t* occluded, std::size_t count) const;
+
+  // Offers `layers` what the ray enters of all that can be seen through, with t_min < t <= t_max.
+  void add_layers(const SceneRay& ray, kernels::NearestEntries& layers) const;
+  // The share of light, 0 to 1, that arrives along each ray through everything between t_min and t_max.
+  void transmittances(const SceneRay* rays, double* arriving, std::size_t count) const;
 
   // Up to so many entries are traced one after another, each with the rays that meet its box; more of them stand as
   // boxes in an Embree scene, which rays go through one by one. Measured: frames of 2, 4, 27 and 64 sets took 0.51,
@@ -59,8 +68,11 @@ class Scene {
   static constexpr std::size_t most_in_turn = 32;
 
  private:
+  double transmittance(const SceneRay& ray) const;  // of what can be seen through
+
   std::vector<Entry> entries_;
   Bounds bounds_;
+  bool is_transparent_ = false;
   std::unique_ptr<EmbreeBridge> embree_;  // made when first needed, and kept
 };
 

@@ -1,10 +1,40 @@
 #include "scene/style.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
 
 namespace insitu {
+namespace {
+
+float between(const std::vector<float>& values, double place) {
+  const double at = std::clamp(place, 0.0, 1.0) * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<std::size_t>(at);
+  if (below + 1 >= values.size()) return values.back();
+  const auto t = static_cast<float>(at - static_cast<double>(below));
+  return (1.0f - t) * values[below] + t * values[below + 1];
+}
+
+std::shared_ptr<const std::vector<float>> read_opacity_map(const insitu_style& description) {
+  const auto refuse = [](const std::string& text) {
+    throw Error(INSITU_ERROR_INVALID_ARGUMENT, "style: opacity_map " + text);
+  };
+  const std::uint64_t count = description.opacity_map_count;
+  if (description.opacity_map == nullptr && count == 0) return nullptr;
+  if (description.opacity_map == nullptr || count == 0) refuse("and opacity_map_count do not fit together");
+  if (count > 65536) refuse("has more than 65536 opacities");
+  if (description.color_by != INSITU_COLOR_ATTRIBUTE) refuse("needs INSITU_COLOR_ATTRIBUTE");
+  std::vector<float> values;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const double opacity = description.opacity_map[i];
+    if (!(opacity >= 0.0 && opacity <= 1.0)) refuse("has an entry that is not between 0 and 1");
+    values.push_back(static_cast<float>(opacity));
+  }
+  return std::make_shared<const std::vector<float>>(std::move(values));
+}
+
+}  // namespace
 
 Style make_style(const insitu_style& description) {
   const auto refuse = [](const std::string& text) { throw Error(INSITU_ERROR_INVALID_ARGUMENT, "style: " + text); };
@@ -43,7 +73,23 @@ Style make_style(const insitu_style& description) {
     if (!(rgb[c] >= 0.0 && std::isfinite(rgb[c]))) refuse("color is negative or not finite");
   if (rgb[0] != 0.0 || rgb[1] != 0.0 || rgb[2] != 0.0)
     style.color = {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2]), 1.0f};
+  if (!(description.opacity >= 0.0 && description.opacity <= 1.0)) refuse("opacity is not between 0 and 1");
+  if (description.opacity != 0.0) style.opacity = static_cast<float>(description.opacity);
+  style.opacity_map = read_opacity_map(description);
   return style;
+}
+
+void check_map(const Style& style, const Colormap& map) {
+  if (style.opacity_map != nullptr && map.kind() == ColormapKind::categorical)
+    throw Error(INSITU_ERROR_INVALID_ARGUMENT, "style: opacity_map needs a colour map that is continuous");
+}
+
+bool is_transparent(const Style& style, const Colormap& map) {
+  if (style.opacity * (style.by_attribute ? 1.0f : style.color.a) < 1.0f) return true;
+  if (!style.by_attribute) return false;
+  const auto lets_through = [](float opacity) { return opacity < 1.0f; };
+  return !map.is_opaque() || (style.opacity_map != nullptr &&
+                              std::any_of(style.opacity_map->begin(), style.opacity_map->end(), lets_through));
 }
 
 void Colors::check(const Style& style, const Particles& particles) {
@@ -59,8 +105,15 @@ void Colors::check(const Style& style, const Particles& particles) {
 }
 
 Colors::Colors(const Style& style, const Particles& particles, const Colormap& map)
-    : map_(&map), component_(style.component), uniform_(style.color) {
+    : map_(&map),
+      component_(style.component),
+      uniform_(style.color),
+      opacity_(style.opacity),
+      opacity_map_(style.opacity_map),
+      are_transparent_(is_transparent(style, map)) {
   check(style, particles);
+  check_map(style, map);
+  uniform_.a *= opacity_;
   if (!style.by_attribute) return;
   values_ = particles.attribute(style.attribute);
   if (map.kind() == ColormapKind::categorical) return;
@@ -70,11 +123,21 @@ Colors::Colors(const Style& style, const Particles& particles, const Colormap& m
 Rgba Colors::of(std::uint64_t item) const {
   if (values_ == nullptr) return uniform_;
   const double value = styled_value(*values_, item, component_);
+  if (map_->is_bad(value)) return Colormap::bad_value;  // missing data stand out
+  Rgba color = of_value(value);
+  color.a *= opacity_;
+  return color;
+}
+
+Rgba Colors::of_value(double value) const {
   if (map_->kind() == ColormapKind::categorical) return map_->lookup(value);
   // One value everywhere: the middle of the map. A falling range turns the map round. Halves keep the difference
   // finite.
   const double extent = 0.5 * range_.high - 0.5 * range_.low;
-  return map_->lookup(extent == 0.0 && !std::isnan(value) ? 0.5 : (0.5 * value - 0.5 * range_.low) / extent);
+  const double place = extent == 0.0 ? 0.5 : (0.5 * value - 0.5 * range_.low) / extent;
+  Rgba color = map_->lookup(place);
+  if (opacity_map_ != nullptr) color.a *= between(*opacity_map_, place);
+  return color;
 }
 
 }  // namespace insitu

@@ -97,6 +97,7 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
          "logarithm of the density around a particle, or its speed [density]")
       ->type_name("density|speed")
       ->check(silent(CLI::IsMember(colors)));
+  number("--opacity", picture.opacity, 0.001, 1.0, "of a particle; what is behind it shines through");
   double slab = -1.0;
   app.add_option("--slab", slab, "thickness of the slice that is drawn; 0 = the whole box [13 lattice spacings]")
       ->type_name("")

@@ -77,6 +77,7 @@ bool Picture::create(const PictureDesc& desc) {
   style.range_mode = INSITU_RANGE_FIXED;  // so that pictures of different steps can be compared
   color_range(desc.color_by, style.range);
   style.own_map = colormap_;
+  style.opacity = desc.opacity;
 
   const insitu_camera camera = camera_for(desc);
   const insitu_effects effects = effects_for(desc);

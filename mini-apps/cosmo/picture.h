@@ -23,6 +23,7 @@ struct PictureDesc {
   std::uint32_t order = INSITU_ORDER_PERMUTE;
   std::uint32_t threads = 0;  // 0 = as many as the machine has
   ColorBy color_by = ColorBy::density;
+  double opacity = 1.0;      // of a particle
   double side = 100.0;       // of the box, Mpc/h
   double spacing = 0.78125;  // of the starting lattice, Mpc/h
   double slab = 10.0;        // thickness of the slice that is drawn, Mpc/h; 0 = the whole box, from a corner

@@ -166,6 +166,43 @@ double parse_bonds(const std::string& text) {
   return value;
 }
 
+std::vector<double> parse_opacity_map(const std::string& text) {
+  const auto wrong = [&text](const std::string& why) {
+    return UsageError("--opacity-map " + text + ": " + why +
+                      ", expected PLACE:OPACITY,..., such as 0:0,0.3:0.05,1:1, all from 0 to 1");
+  };
+  struct Point {
+    double place;
+    double opacity;
+  };
+  std::vector<Point> points;
+  for (const std::string& part : split_at(text, ',')) {
+    const std::vector<std::string> numbers = split_at(part, ':');
+    double value[2] = {};
+    bool good = numbers.size() == 2;
+    for (std::size_t i = 0; good && i < 2; ++i)
+      good = parse_number(numbers[i], value[i]) && value[i] >= 0.0 && value[i] <= 1.0;
+    if (!good) throw wrong(quoted(part) + " is no point");
+    if (!points.empty() && value[0] < points.back().place) throw wrong("places do not ascend");
+    points.push_back({value[0], value[1]});
+  }
+  constexpr std::size_t steps = 1024;
+  std::vector<double> opacities;
+  std::size_t next = 0;  // the first point behind the place
+  for (std::size_t i = 0; i <= steps; ++i) {
+    const double place = static_cast<double>(i) / steps;
+    while (next < points.size() && points[next].place <= place) ++next;
+    if (next == 0 || next == points.size()) {
+      opacities.push_back(next == 0 ? points.front().opacity : points.back().opacity);
+      continue;
+    }
+    const Point& a = points[next - 1];
+    const Point& b = points[next];
+    opacities.push_back(a.opacity + (b.opacity - a.opacity) * (place - a.place) / (b.place - a.place));
+  }
+  return opacities;
+}
+
 std::vector<int> parse_elements(const std::string& text) {
   std::vector<int> elements;
   for (const std::string& part : split_at(text, ',')) {

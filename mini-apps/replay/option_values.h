@@ -24,6 +24,8 @@ StepSelection parse_steps(const std::string& text);
 std::array<std::uint32_t, 3> parse_replicate(const std::string& text);
 // "auto", which is 0, or a length.
 double parse_bonds(const std::string& text);
+// "0:0,0.3:0.05,1:1": opacities at places of the colour map, as 1025 opacities evenly spaced over it.
+std::vector<double> parse_opacity_map(const std::string& text);
 // "O,H,Na" as atomic numbers.
 std::vector<int> parse_elements(const std::string& text);
 

@@ -27,6 +27,7 @@ struct Texts {
   std::string order = "index";
   std::string bonds;
   std::string replicate;
+  std::string opacity_map;
   std::vector<double> range;
   std::vector<std::string> filters;
   bool no_hetatm = false;
@@ -116,6 +117,16 @@ void add_looks(CLI::App& app, Options& options, Texts& texts) {
                  wrapped("Values at the two ends of the colour map; by default those of the step"))
       ->expected(2)
       ->type_name("LO HI")
+      ->group(group);
+  app.add_option("--opacity", options.opacity,
+                 wrapped("How opaque the particles are, above 0 to 1; what is behind them shines through"))
+      ->type_name("F")
+      ->check(CLI::Range(0.0, 1.0))
+      ->group(group);
+  app.add_option("--opacity-map", texts.opacity_map,
+                 wrapped("Opacity by value, as points over the colour map from 0 to 1 with straight lines between "
+                         "them, such as 0:0,0.3:0.05,1:1; times --opacity"))
+      ->type_name("P:F,...")
       ->group(group);
   app.add_option("--radius", options.radius,
                  wrapped("A length, vdw (by element), auto (by the spacing), or the attribute to take; by default the "
@@ -269,6 +280,8 @@ void convert(const Texts& texts, Options& options) {
   alternatives_of(options.filters);  // says when they are too many
   if (!texts.bonds.empty()) options.bonds = parse_bonds(texts.bonds);
   if (!texts.replicate.empty()) options.replicate = parse_replicate(texts.replicate);
+  if (!(options.opacity > 0.0)) throw UsageError("--opacity: expected a number above 0, at most 1");
+  if (!texts.opacity_map.empty()) options.opacity_map = parse_opacity_map(texts.opacity_map);
   options.order = order_names.at(texts.order);
   options.read.hetatm = !texts.no_hetatm;
   check_image_pattern(options.out);

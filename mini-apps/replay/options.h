@@ -51,6 +51,8 @@ struct Options {
   std::string color;
   std::string colormap;
   std::optional<std::array<double, 2>> range;
+  double opacity = 1.0;
+  std::vector<double> opacity_map;  // evenly spaced over the colour map; empty: 1 everywhere
   std::string radius;
   double radius_scale = 1.0;
   std::vector<FilterChoice> filters;     // all of them have to hold

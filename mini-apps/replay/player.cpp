@@ -155,6 +155,16 @@ void Player::set_style(const ColorChoice& color) {
     style.component = color.component;
     style.colormap = color.colormap.c_str();
   }
+  if (!options_.opacity_map.empty()) {
+    const bool is_continuous =
+        !color.attribute.empty() && color.colormap != "categorical" && color.colormap != "elements";
+    if (!is_continuous) {
+      throw UsageError("--opacity-map: expected a colour by value, such as --color speed --colormap viridis");
+    }
+    style.opacity_map = options_.opacity_map.data();
+    style.opacity_map_count = options_.opacity_map.size();
+  }
+  style.opacity = options_.opacity;
   if (options_.range) {
     style.range_mode = INSITU_RANGE_FIXED;
     style.range[0] = (*options_.range)[0];

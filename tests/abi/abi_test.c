@@ -99,7 +99,7 @@ static void check_structs(void) {
   OFFSET(insitu_filter, term_count, 4);
   OFFSET(insitu_filter, terms, 8);
 
-  SIZE(insitu_style, 80);
+  SIZE(insitu_style, 104);
   OFFSET(insitu_style, struct_size, 0);
   OFFSET(insitu_style, color_by, 4);
   OFFSET(insitu_style, attribute, 8);
@@ -109,6 +109,9 @@ static void check_structs(void) {
   OFFSET(insitu_style, colormap, 40);
   OFFSET(insitu_style, own_map, 48);
   OFFSET(insitu_style, color, 56);
+  OFFSET(insitu_style, opacity, 80);
+  OFFSET(insitu_style, opacity_map, 88);
+  OFFSET(insitu_style, opacity_map_count, 96);
 
   SIZE(insitu_colormap_desc, 24);
   OFFSET(insitu_colormap_desc, struct_size, 0);

@@ -389,7 +389,11 @@ TEST(BadStructs, StylesThatCannotBe) {
        {"range_mode", [](insitu_style& s) { s.range_mode = 2; }},
        {"range", [](insitu_style& s) { s.range[0] = nan; }},
        {"range", [](insitu_style& s) { s.range[1] = infinity; }},
-       {"color", [](insitu_style& s) { s.color[0] = -1.0; }}},
+       {"color", [](insitu_style& s) { s.color[0] = -1.0; }},
+       {"opacity", [](insitu_style& s) { s.opacity = -0.5; }},
+       {"opacity", [](insitu_style& s) { s.opacity = 1.5; }},
+       {"opacity", [](insitu_style& s) { s.opacity = nan; }},
+       {"opacity_map", [](insitu_style& s) { s.opacity_map_count = 3; }}},
       [&](const insitu_style* s) { return insitu_geometry_set_style(studio.context, studio.geometry, s); });
 }
 

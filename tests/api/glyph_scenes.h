@@ -86,6 +86,8 @@ struct Wish {
   std::uint32_t order = INSITU_ORDER_INDEX;
   std::vector<insitu_filter_term> filter;
   bool filter_late = false;  // set after a first commit without it
+  double opacity = 0.0;
+  std::uint32_t effects = INSITU_EFFECT_SHADOWS | INSITU_EFFECT_AMBIENT_OCCLUSION;
 };
 
 inline insitu_camera camera_at(double x, double y, double z) {
@@ -108,7 +110,7 @@ inline Picture draw(Data data, const Wish& wish, std::string* warnings = nullptr
   const insitu_view view = make_view(context, &camera);
   insitu_effects effects;
   insitu_effects_init(&effects);
-  effects.flags = INSITU_EFFECT_SHADOWS | INSITU_EFFECT_AMBIENT_OCCLUSION;
+  effects.flags = wish.effects;
   effects.ao_samples = 2;
   effects.ao_radius = 0.3;  // whatever the bounds of the scene
   EXPECT_TRUE(works(context, insitu_view_set_effects(context, view, &effects)));
@@ -125,7 +127,8 @@ inline Picture draw(Data data, const Wish& wish, std::string* warnings = nullptr
   desc.radius_default = data.ball;
   desc.attributes = attributes;
   desc.attribute_count = 2;
-  const insitu_style style = make_style("value", 0.0, 1.0);
+  insitu_style style = make_style("value", 0.0, 1.0);
+  style.opacity = wish.opacity;
   EXPECT_TRUE(works(context, insitu_geometry_set_style(context, set, &style)));
   EXPECT_TRUE(works(context, insitu_particles_set_cell(context, set, wish.cell)));
   insitu_geometry glyphs = {0};

@@ -59,6 +59,7 @@ struct Variant {
   std::uint32_t order = INSITU_ORDER_INDEX;
   std::uint32_t max_samples = 0;  // per pixel; 0: not adaptive
   double treelet_share = 0.0;
+  double opacity = 0.0;
 };
 
 std::vector<Particle> shuffled(const std::vector<Particle>& particles, std::uint64_t seed) {
@@ -125,7 +126,8 @@ Picture draw(std::vector<Particle> particles, const Variant& variant) {
   Arrays arrays(particles);
   arrays.desc.treelet_share = variant.treelet_share;
   const insitu_geometry geometry = testing::make_particles(context, variant.order);
-  const insitu_style style = by_heat();
+  insitu_style style = by_heat();
+  style.opacity = variant.opacity;
   EXPECT_TRUE(works(context, insitu_geometry_set_style(context, geometry, &style)));
   const insitu_camera camera = front_camera();
   const insitu_view view = testing::make_view(context, &camera, 3);
@@ -195,6 +197,25 @@ TEST_F(Invariance, AdaptiveSampling) {
   EXPECT_EQ(reference.item, fixed.item);
   for (const std::uint32_t order : {INSITU_ORDER_INDEX, INSITU_ORDER_PERMUTE, INSITU_ORDER_COPY})
     EXPECT_EQ(draw(shuffled(particles, 5), {8, order, 24}), reference);
+}
+
+// Particles that can be seen through: dozens of layers per ray, more than a list of them holds, and shadows through all
+// of them.
+TEST_F(Invariance, Transparency) {
+  std::vector<Particle> particles = make_particles(9);
+  particles.resize(testing::sanitized ? 300 : 1500);
+  const Picture opaque = draw(particles, {.max_threads = 1});
+  for (const std::uint32_t max_samples : {0u, 6u}) {
+    const Picture reference = draw(particles, {.max_threads = 1, .max_samples = max_samples, .opacity = 0.05});
+    EXPECT_NE(reference.color, opaque.color);
+    EXPECT_EQ(reference.item, opaque.item);
+    for (const std::uint32_t order : {INSITU_ORDER_INDEX, INSITU_ORDER_PERMUTE, INSITU_ORDER_COPY}) {
+      for (const double share : {0.0, 1.0}) {
+        SCOPED_TRACE(share);
+        EXPECT_EQ(draw(shuffled(particles, 6 + order), {8, order, max_samples, share, 0.05}), reference);
+      }
+    }
+  }
 }
 
 // Small sets are a single leaf, or a few.

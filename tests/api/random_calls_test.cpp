@@ -327,6 +327,7 @@ class Sequence {
     insitu_style_init(&style);
     style.color_by = by_heat ? INSITU_COLOR_ATTRIBUTE : INSITU_COLOR_UNIFORM;
     style.attribute = "heat";
+    if (random_.below(3) == 0) style.opacity = 0.5;
     const char* maps[] = {nullptr, "viridis", "categorical", "no such map"};
     style.colormap = maps[random_.below(legal_ ? 3 : 4)];
     int own_map = -1;
@@ -420,7 +421,7 @@ class Sequence {
   }
 
   void create_map() {
-    const double colors[8] = {0.0, 0.5, 1.0, 1.0, 1.0, 0.0, 0.0, 1.0};
+    const double colors[8] = {0.0, 0.5, 1.0, 1.0, 1.0, 0.0, 0.0, 0.25};
     insitu_colormap_desc desc;
     insitu_colormap_desc_init(&desc);
     desc.rgba = colors;

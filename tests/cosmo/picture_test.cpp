@@ -116,6 +116,7 @@ TEST(CosmoPicture, ShowsWhatItIsAskedFor) {
   draw("box", [](PictureDesc& d) { d.slab = 0.0; });
   draw("speed", [](PictureDesc& d) { d.color_by = ColorBy::speed; });
   draw("bare", [](PictureDesc& d) { d.ao_samples = 0; });
+  draw("faint", [](PictureDesc& d) { d.opacity = 0.25; });
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     EXPECT_FALSE(pictures[i].empty());
     for (std::size_t j = 0; j < i; ++j) EXPECT_FALSE(pictures[i] == pictures[j]) << i << ' ' << j;

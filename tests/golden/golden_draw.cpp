@@ -129,6 +129,7 @@ insitu_geometry add_set(const Context& context, const Set& set, const SetArrays&
     context.expect_ok(insitu_colormap_create(context.get(), &colors, &style.own_map));
   }
   for (int c = 0; c < 3; ++c) style.color[c] = set.color[c];
+  style.opacity = set.opacity;
   context.expect_ok(insitu_geometry_set_style(context.get(), geometry, &style));
   return geometry;
 }

@@ -275,6 +275,33 @@ Scene filtered() {
   return scene;
 }
 
+// A shell of bubbles, in four opacities, around opaque balls that cast their shadows on each other; a floor below.
+Scene bubbles() {
+  Scene scene = make_scene("bubbles", {0.0, 0.5, 0.0}, {3.0, 4.25, 11.0}, 13.0);
+  Set shell;
+  for (int i = 0; i < 70; ++i) {
+    const double y = 1.0 - 2.0 * (i + 0.5) / 70.0;
+    const double r = std::sqrt(1.0 - y * y);
+    const double a = 2.39996322972865332 * i;
+    shell.add(rounded(2.25 * r * std::cos(a)), rounded(2.25 * y + 0.5), rounded(2.25 * r * std::sin(a)), 0.625, i,
+              i % 4);
+  }
+  shell.color_by = "type";
+  shell.own_colors = four_colors();
+  for (std::size_t i = 0; i < 4; ++i) shell.own_colors[4 * i + 3] = 0.125 + 0.25 * static_cast<double>(i);
+  shell.opacity = 0.5;
+  Set core;
+  core.add(0.0, -102.75, 0.0, 100.0, 0.0, 2);
+  for (int i = 0; i < 5; ++i) core.add(0.5 * i - 1.0, 0.25 * i, 0.5 - 0.375 * i, 0.5, i, i % 4);
+  core.color_by = "type";
+  core.own_colors = four_colors();
+  scene.sets = {shell, core};
+  scene.lights = {make_light(INSITU_LIGHT_AMBIENT, 0, 0, 0, 0.25),
+                  make_light(INSITU_LIGHT_DIRECTIONAL, -0.5, -1.0, -0.25, 0.75)};
+  scene.effects.flags = INSITU_EFFECT_SHADOWS;
+  return scene;
+}
+
 Scene transparent_background() {
   Scene scene = grid("transparent_background", "categorical");
   scene.sets[0].color_by = "type";
@@ -300,6 +327,7 @@ std::vector<Scene> all_scenes() {
           arrows(),
           replicas(),
           filtered(),
+          bubbles(),
           transparent_background()};
 }
 

@@ -23,6 +23,7 @@ struct Set {
   const char* colormap = "viridis";
   std::vector<double> own_colors;  // categorical, sRGB and opacity: instead of `colormap`
   double color[3] = {0.8, 0.8, 0.8};
+  double opacity = 0.0;  // as in insitu_style
 
   void add(double px, double py, double pz, double r, double v, std::int32_t t) {
     x.insert(x.end(), {px, py, pz});

@@ -1,5 +1,6 @@
 #include "plain_tracer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -23,18 +24,20 @@ struct Ball {
   Vector centre;
   double radius;
   double color[3];  // linear
+  double opacity;
 };
 
 std::vector<Ball> balls_of(const Scene& scene) {
   std::vector<Ball> balls;
   for (const Set& set : scene.sets) {
     for (std::size_t i = 0; i < set.count(); ++i) {
-      Ball ball{vector_of(&set.x[3 * i]), set.radius[i], {}};
+      Ball ball{vector_of(&set.x[3 * i]), set.radius[i], {}, set.opacity == 0.0 ? 1.0 : set.opacity};
       const std::size_t category = static_cast<std::size_t>(set.type[i]) % (set.own_colors.size() / 4);
       for (std::size_t c = 0; c < 3; ++c) {
         const double s = set.own_colors[4 * category + c];
         ball.color[c] = s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
       }
+      ball.opacity *= set.own_colors[4 * category + 3];
       balls.push_back(ball);
     }
   }
@@ -52,6 +55,46 @@ double meet(const Ball& ball, const Vector& origin, const Vector& direction) {
   return t > 0.0 ? t : std::numeric_limits<double>::infinity();
 }
 
+// Where less than this is left, nothing is.
+constexpr double least = 1.0 / 1024;
+
+struct Layer {
+  double t;
+  const Ball* ball;
+};
+
+std::vector<Layer> layers_of(const std::vector<Ball>& balls, const Vector& origin, const Vector& direction) {
+  std::vector<Layer> layers;
+  for (const Ball& ball : balls) {
+    const double t = meet(ball, origin, direction);
+    if (t < std::numeric_limits<double>::infinity()) layers.push_back({t, &ball});
+  }
+  std::stable_sort(layers.begin(), layers.end(), [](const Layer& a, const Layer& b) { return a.t < b.t; });
+  return layers;
+}
+
+double light_at(const Scene& scene, const std::vector<Ball>& balls, const Ball& on, const Vector& point) {
+  const bool has_shadows = (scene.effects.flags & INSITU_EFFECT_SHADOWS) != 0;
+  double light = 0.0;
+  for (const insitu_light& lamp : scene.lights) {
+    if (lamp.kind == INSITU_LIGHT_AMBIENT) {
+      light += lamp.intensity;
+      continue;
+    }
+    const Vector towards = unit(-1.0 * vector_of(lamp.direction));
+    const double cosine = dot(unit(point - on.centre), towards);
+    if (!(cosine > 0.0)) continue;
+    double passed = 1.0;
+    for (const Ball& ball : balls) {
+      const bool in_the_way =
+          has_shadows && &ball != &on && meet(ball, point, towards) < std::numeric_limits<double>::infinity();
+      if (in_the_way) passed *= 1.0 - ball.opacity;
+    }
+    if (passed >= least) light += passed * lamp.intensity * cosine;
+  }
+  return light;
+}
+
 }  // namespace
 
 std::vector<float> trace_plainly(const Scene& scene) {
@@ -64,7 +107,6 @@ std::vector<float> trace_plainly(const Scene& scene) {
   const bool perspective = camera.kind == INSITU_CAMERA_PERSPECTIVE;
   constexpr double pi = 3.14159265358979323846;
   const double half_height = perspective ? std::tan(camera.fov_y_deg * pi / 360.0) : 0.5 * camera.height;
-  const bool has_shadows = (scene.effects.flags & INSITU_EFFECT_SHADOWS) != 0;
 
   std::vector<float> pixels;
   for (std::uint32_t py = 0; py < height; ++py) {
@@ -82,36 +124,16 @@ std::vector<float> trace_plainly(const Scene& scene) {
         const Vector origin = perspective ? eye : eye + across;
         const Vector direction = perspective ? unit(ahead + across) : ahead;
 
-        double nearest = std::numeric_limits<double>::infinity();
-        const Ball* hit = nullptr;
-        for (const Ball& ball : balls) {
-          const double t = meet(ball, origin, direction);
-          if (t < nearest) {
-            nearest = t;
-            hit = &ball;
-          }
+        double left = 1.0;  // of the light from behind
+        for (const Layer& layer : layers_of(balls, origin, direction)) {
+          const Vector point = origin + layer.t * direction;
+          double passed = left * (1.0 - layer.ball->opacity);
+          if (passed < least) passed = 0.0;
+          const double light = light_at(scene, balls, *layer.ball, point);
+          for (int c = 0; c < 3; ++c) sum[c] += (left - passed) * layer.ball->color[c] * light;
+          left = passed;
         }
-        if (hit == nullptr) {
-          for (int c = 0; c < 3; ++c) sum[c] += scene.background[c];
-          continue;
-        }
-        const Vector point = origin + nearest * direction;
-        const Vector normal = unit(point - hit->centre);
-        double light = 0.0;
-        for (const insitu_light& lamp : scene.lights) {
-          if (lamp.kind == INSITU_LIGHT_AMBIENT) {
-            light += lamp.intensity;
-            continue;
-          }
-          const Vector towards = unit(-1.0 * vector_of(lamp.direction));
-          const double cosine = dot(normal, towards);
-          bool lit = cosine > 0.0;
-          if (has_shadows)
-            for (const Ball& ball : balls)
-              lit = lit && (&ball == hit || meet(ball, point, towards) == std::numeric_limits<double>::infinity());
-          if (lit) light += lamp.intensity * cosine;
-        }
-        for (int c = 0; c < 3; ++c) sum[c] += hit->color[c] * light;
+        for (int c = 0; c < 3; ++c) sum[c] += left * scene.background[c];
       }
       for (const double s : sum) pixels.push_back(static_cast<float>(s / scene.samples_per_pixel));
       pixels.push_back(1.0f);

@@ -1,5 +1,6 @@
 // A ray tracer of its own, in plain C++ and by brute force, written from what the documentation of the library says a
-// picture is. It knows spheres in colours by category, a fixed camera, ambient and directional lights, and shadows.
+// picture is. It knows spheres in colours and opacities by category, a fixed camera, ambient and directional lights,
+// and shadows.
 #pragma once
 
 #include <vector>
@@ -8,7 +9,7 @@
 
 namespace insitu::golden {
 
-// 4 floats per pixel, linear and opaque.
+// 4 floats per pixel, linear; the background is opaque.
 std::vector<float> trace_plainly(const Scene& scene);
 
 }  // namespace insitu::golden

@@ -50,6 +50,21 @@ TEST(Options, WrongCamerasAreRefused) {
   EXPECT_THAT(error(""), HasSubstr("expected fit or eye="));
 }
 
+TEST(Options, OpacityMapsAreStraightLinesBetweenPoints) {
+  const std::vector<double> map = parse_opacity_map("0.25:0.2,0.5:0.4,0.5:1,1:0");
+  ASSERT_EQ(map.size(), 1025u);
+  EXPECT_EQ(map[0], 0.2);
+  EXPECT_EQ(map[256], 0.2);
+  EXPECT_DOUBLE_EQ(map[384], 0.3);
+  EXPECT_EQ(map[512], 1.0);  // a step: what is behind it
+  EXPECT_DOUBLE_EQ(map[768], 0.5);
+  EXPECT_EQ(map[1024], 0.0);
+  EXPECT_EQ(parse_opacity_map("0.7:0.5")[3], 0.5);
+  for (const char* text : {"", "0.5", "0:2", "-1:0", "0:nan", "0:0:0", "0:0,", "a:1"})
+    EXPECT_THAT(usage_error([text] { parse_opacity_map(text); }), HasSubstr("is no point")) << text;
+  EXPECT_THAT(usage_error([] { parse_opacity_map("0.5:0,0.4:1"); }), HasSubstr("do not ascend"));
+}
+
 TEST(Options, BondsAndReplicas) {
   EXPECT_EQ(parse_bonds("auto"), 0.0);
   EXPECT_EQ(parse_bonds("1.6"), 1.6);

@@ -35,6 +35,15 @@ void ParticleImage::bounds(double lower[3], double upper[3]) const {
   std::copy_n(upper_, 3, upper);
 }
 
+bool ParticleImage::clip(kernels::Ray& ray) const {
+  const kernels::RaySlabs::Span box =
+      kernels::RaySlabs(ray.origin, ray.direction).span(lower_, upper_, ray.t_min, ray.t_max);
+  if (!box.meets) return false;
+  ray.t_min = std::max(ray.t_min, box.enter);
+  ray.t_max = std::min(ray.t_max, box.leave);
+  return true;
+}
+
 bool ParticleImage::holds(std::uint64_t item) const {
   double centre[3];
   double image[3];
@@ -54,12 +63,7 @@ void ParticleImage::first_hits(const kernels::Ray* rays, kernels::Hit* hits, std
     for (std::size_t i = begin; i < std::min(count, begin + batch); ++i) {
       kernels::Ray ray = rays[i];
       ray.t_max = std::min(ray.t_max, hits[i].t);
-      // All of this image lies within its box.
-      const kernels::RaySlabs::Span box =
-          kernels::RaySlabs(ray.origin, ray.direction).span(lower_, upper_, ray.t_min, ray.t_max);
-      if (!box.meets) continue;
-      ray.t_min = std::max(ray.t_min, box.enter);
-      ray.t_max = std::min(ray.t_max, box.leave);
+      if (!clip(ray)) continue;
       place[n] = i;
       going[n++] = ray;
     }

@@ -16,7 +16,7 @@ struct OccupiedImage {
   double upper[3];
 };
 
-class ParticleImage final : public Geometry {
+class ParticleImage final : public TransparentGeometry {
  public:
   ParticleImage(const Particles& particles, const Cell& cell, const OccupiedImage& image);
 
@@ -26,9 +26,16 @@ class ParticleImage final : public Geometry {
   void first_hits(const kernels::Ray* rays, kernels::Hit* hits, std::size_t count) const override;
   void any_hits(const kernels::Ray* rays, std::uint8_t* occluded, std::size_t count) const override;
   Surface surface(std::uint64_t item, const double point[3]) const override { return particles_.surface(item, point); }
+  void nearest_entries(const kernels::Ray& ray, std::uint32_t number, const kernels::ItemOpacity& opacity,
+                       kernels::NearestEntries& entries) const override;
+  kernels::OpticalDepth optical_depth(const kernels::Ray& ray, const kernels::ItemOpacity& opacity,
+                                      kernels::OpticalDepth depth) const override;
+  // Whether an item of the set lies in this image.
+  bool holds(std::uint64_t item) const;
 
  private:
-  bool holds(std::uint64_t item) const;
+  // To the box, in which all of this image lies. False: the ray misses it.
+  bool clip(kernels::Ray& ray) const;
 
   const Particles& particles_;
   const Cell& cell_;

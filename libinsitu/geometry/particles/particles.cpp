@@ -362,14 +362,6 @@ namespace {
 // Rays are taken into the space of integer positions in batches of this many.
 constexpr std::size_t batch = 256;
 
-kernels::Ray to_lattice(const kernels::Ray& ray, const ParticleArrays& arrays) {
-  kernels::Ray local = ray;
-  for (int c = 0; c < 3; ++c) local.origin[c] = (ray.origin[c] - arrays.position_origin[c]) / arrays.position_scale;
-  local.t_min /= arrays.position_scale;
-  local.t_max /= arrays.position_scale;
-  return local;
-}
-
 }  // namespace
 
 void Particles::trace_first_hits(const kernels::Ray* rays, kernels::Hit* hits, std::size_t count) const {
@@ -390,7 +382,7 @@ void Particles::first_hits(const kernels::Ray* rays, kernels::Hit* hits, std::si
   for (std::size_t begin = 0; begin < count; begin += batch) {
     const std::size_t n = std::min(batch, count - begin);
     for (std::size_t i = 0; i < n; ++i) {
-      local[i] = to_lattice(rays[begin + i], *arrays_);
+      local[i] = local_ray(rays[begin + i]);
       local[i].t_max = std::min(local[i].t_max, hits[begin + i].t / scale);
       local_hits[i] = {};
     }
@@ -406,7 +398,7 @@ void Particles::any_hits(const kernels::Ray* rays, std::uint8_t* occluded, std::
   kernels::Ray local[batch];
   for (std::size_t begin = 0; begin < count; begin += batch) {
     const std::size_t n = std::min(batch, count - begin);
-    for (std::size_t i = 0; i < n; ++i) local[i] = to_lattice(rays[begin + i], *arrays_);
+    for (std::size_t i = 0; i < n; ++i) local[i] = local_ray(rays[begin + i]);
     trace_any_hits(local, occluded + begin, n);
   }
 }
@@ -414,7 +406,7 @@ void Particles::any_hits(const kernels::Ray* rays, std::uint8_t* occluded, std::
 std::vector<kernels::Span> Particles::all_hits(const kernels::Ray& ray) const {
   std::vector<kernels::Span> spans;
   const double scale = arrays_->position_scale;
-  kernels::pkd_all_hits(tree_, to_lattice(ray, *arrays_), spans);
+  kernels::pkd_all_hits(tree_, local_ray(ray), spans);
   for (kernels::Span& span : spans) {
     span.t_enter *= scale;
     span.t_leave *= scale;

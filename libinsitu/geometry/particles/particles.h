@@ -14,6 +14,7 @@
 #include "geometry/particles/particle_copies.h"
 #include "geometry/particles/particle_selection.h"
 #include "geometry/pkd/pkd_build.h"
+#include "geometry/transparent_geometry.h"
 #include "kernels/pkd_tree.h"
 #include "kernels/ray.h"
 #include "kernels/treelets.h"
@@ -48,7 +49,7 @@ struct ValueRange {
 
 enum class ParticleOrder : std::uint32_t { index = 0, permute = 1, copy = 2 };  // as INSITU_ORDER_*
 
-class Particles : public Geometry {
+class Particles : public TransparentGeometry {
  public:
   Particles(std::string name, ParticleOrder order, bool keep_permutation);
   Particles(const Particles&) = delete;
@@ -95,6 +96,10 @@ class Particles : public Geometry {
   void first_hits(const kernels::Ray* rays, kernels::Hit* hits, std::size_t count) const override;
   void any_hits(const kernels::Ray* rays, std::uint8_t* occluded, std::size_t count) const override;
   Surface surface(std::uint64_t item, const double point[3]) const override;
+  void nearest_entries(const kernels::Ray& ray, std::uint32_t number, const kernels::ItemOpacity& opacity,
+                       kernels::NearestEntries& entries) const override;
+  kernels::OpticalDepth optical_depth(const kernels::Ray& ray, const kernels::ItemOpacity& opacity,
+                                      kernels::OpticalDepth depth) const override;
   std::vector<kernels::Span> all_hits(const kernels::Ray& ray) const;
   void centre(std::uint64_t item, double out[3]) const;
   double radius(std::uint64_t item) const;
@@ -119,6 +124,8 @@ class Particles : public Geometry {
   const kernels::Treelets& treelets() const { return treelets_; }
 
  private:
+  // The ray in the space of the arrays: for integer positions, the lattice.
+  kernels::Ray local_ray(const kernels::Ray& ray) const;
   template <class Index>
   void build_over_index(Budget& budget, BudgetVector<Index>& index);
   void build_in_place(Budget& budget);

@@ -290,10 +290,19 @@ typedef struct insitu_style {
   const char* colormap;    /* "viridis" (default), "inferno", "coolwarm", "categorical", "elements" */
   insitu_colormap own_map; /* used instead of `colormap` when its id is not 0 */
   double color[3];         /* linear RGB 0..1 of INSITU_COLOR_UNIFORM; all 0 = 0.8 grey */
+  double opacity;          /* 0..1, factor on the opacity of the own map, or of the colour; 0 = 1: opaque */
+  /* One more factor, by value: opacities of 0..1 evenly spaced over the colour map, linear in between; copied. For
+   * maps that are continuous, the built-in ones too; NULL = 1 everywhere. */
+  const double* opacity_map;
+  uint64_t opacity_map_count; /* at most 65536 */
 } insitu_style;
 
-/* How a geometry looks; kept until changed. An unknown attribute name is an error at the next commit or at this call
- * when arrays are bound; the message lists the valid names. An unknown colour map likewise, at this call. */
+/* How a geometry looks; kept until changed. Particles of less than full opacity let through what is behind them
+ * (docs/opacity.md): each counts once, where a ray enters it, in the order of distance; those of opacity 0 are not
+ * there at all, those whose value is not a number are opaque. Bonds and vectors are opaque: for them a style with
+ * another opacity, or with a colour map that has one, is unsupported. An unknown attribute name is an error at the next
+ * commit or at this call when arrays are bound; the message lists the valid names. An unknown colour map likewise, at
+ * this call. */
 INSITU_API insitu_status insitu_geometry_set_style(insitu_context context, insitu_geometry geometry,
                                                    const insitu_style* style);
 /* Bounds of the drawn items, radii included, after insitu_commit; lower > upper when nothing is drawn. */

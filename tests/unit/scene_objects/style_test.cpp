@@ -123,6 +123,55 @@ TEST_F(Coloured, UniformNeedsNoAttribute) {
   EXPECT_EQ(colors(style).of(0), (Rgba{0.0f, 0.5f, 0.0f, 1.0f}));
 }
 
+// The style's factor, its map by value, and the opacity of the colours, multiplied; missing data stay opaque.
+TEST_F(Coloured, OpacitiesMultiply) {
+  insitu_style style = by("value");
+  EXPECT_FALSE(colors(style).are_transparent());
+  EXPECT_EQ(colors(style).of(0).a, 1.0f);
+  style.opacity = 0.5;
+  const double by_value[] = {0.25, 1.0, 0.5};
+  style.opacity_map = by_value;
+  style.opacity_map_count = 3;
+  const Colors c = colors(style);
+  EXPECT_TRUE(c.are_transparent());
+  EXPECT_EQ(c.of(0).a, 0.125f);
+  EXPECT_EQ(c.of(1).a, 0.25f);
+  EXPECT_EQ(c.of(2).a, 0.5f);
+  EXPECT_EQ(c.of(3), Colormap::bad_value);
+  EXPECT_EQ(c.of(4).a, 0.25f);
+  EXPECT_EQ(c.of(2).g, viridis.lookup(0.5).g);
+  EXPECT_EQ(c.opacity().of(1), 0.25f);
+  const double opaque[] = {1.0, 1.0};
+  style.opacity = 1.0;
+  style.opacity_map = opaque;
+  style.opacity_map_count = 2;
+  EXPECT_FALSE(colors(style).are_transparent());
+  style.opacity_map = by_value;
+  style.opacity_map_count = 1;
+  EXPECT_EQ(colors(style).of(0).a, 0.25f);
+  EXPECT_EQ(colors(style).of(1).a, 0.25f);
+}
+
+TEST_F(Coloured, TheOpacityOfAnOwnMapCounts) {
+  const std::vector<double> rgba = {1, 0, 0, 0.2, 0, 1, 0, 1};
+  const Colormap half = Colormap::from_srgb(ColormapKind::continuous, rgba);
+  Style style = make_style(by("value"));
+  EXPECT_TRUE(Colors(style, particles, half).are_transparent());
+  EXPECT_FLOAT_EQ(Colors(style, particles, half).of(0).a, 0.2f);
+  EXPECT_FLOAT_EQ(Colors(style, particles, half).of(2).a, 0.6f);
+  style.opacity = 0.5f;
+  EXPECT_FLOAT_EQ(Colors(style, particles, half).of(2).a, 0.3f);
+  const Colormap categories = Colormap::from_srgb(ColormapKind::categorical, rgba);
+  style = make_style(by("type"));
+  EXPECT_FLOAT_EQ(Colors(style, particles, categories).of(2).a, 0.2f);
+  EXPECT_EQ(Colors(style, particles, categories).of(1).a, 1.0f);
+  insitu_style uniform;
+  insitu_style_init(&uniform);
+  uniform.opacity = 0.25;
+  EXPECT_TRUE(colors(uniform).are_transparent());
+  EXPECT_EQ(colors(uniform).of(3).a, 0.25f);
+}
+
 TEST_F(Coloured, UnknownAttributesListTheKnown) {
   try {
     colors(by("temperature"));
@@ -176,6 +225,29 @@ TEST(MakeStyle, RefusesWhatCannotBeMeant) {
   style = by("a");
   style.color[0] = -0.1;
   EXPECT_THAT(message(style), HasSubstr("color"));
+  for (const double bad : {-0.1, 1.1, nan, infinity}) {
+    style = by("a");
+    style.opacity = bad;
+    EXPECT_THAT(message(style), HasSubstr("opacity is not between 0 and 1"));
+    const double map[] = {0.5, bad};
+    style = by("a");
+    style.opacity_map = map;
+    style.opacity_map_count = 2;
+    EXPECT_THAT(message(style), HasSubstr("opacity_map"));
+  }
+  const double map[] = {0.5};
+  style = by("a");
+  style.opacity_map_count = 1;
+  EXPECT_THAT(message(style), HasSubstr("do not fit"));
+  style.opacity_map = map;
+  EXPECT_EQ(message(style), "accepted");
+  style.opacity_map_count = 0;
+  EXPECT_THAT(message(style), HasSubstr("do not fit"));
+  style.opacity_map_count = 65537;
+  EXPECT_THAT(message(style), HasSubstr("65536"));
+  style.opacity_map_count = 1;
+  style.color_by = INSITU_COLOR_UNIFORM;
+  EXPECT_THAT(message(style), HasSubstr("INSITU_COLOR_ATTRIBUTE"));
 }
 
 }  // namespace
