@@ -2,7 +2,7 @@
 #   cmake -DROOT=<source folder> -P check_text.cmake
 cmake_minimum_required(VERSION 3.25)
 set(names *.h *.hpp *.c *.cc *.cpp *.cmake *.cmake.in *.pc.in *.map *.md *.txt *.sh *.supp *.yaml *.yml *.json
-    .clang-format .clang-tidy demo run sanitizers tidy)
+    .clang-format .clang-tidy demo make run sanitizers tidy)
 list(TRANSFORM names PREPEND "--include=" OUTPUT_VARIABLE includes)
 execute_process(
   COMMAND grep -rnIP "\\t|\\r| +$" --exclude-dir=build --exclude-dir=.git ${includes} .
