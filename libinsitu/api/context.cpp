@@ -457,7 +457,7 @@ void Context::build(GeometryObject& geometry) {
   report_.trees_repaired += made.how == PkdBuilt::How::repaired ? 1 : 0;
   report_.trees_reused += made.how == PkdBuilt::How::reused ? 1 : 0;
   report_.items_moved += made.moved;
-  report_.treelets += particles.treelets().count;
+  report_.treelets += particles.treelet_count();
   report_.treelet_bytes += particles.treelet_bytes();
   report_.bytes_borrowed += particles.borrowed_bytes();
   report_.bytes_copied += particles.copied_bytes();

@@ -54,6 +54,8 @@ class Run {
     return complete ? exit_success : exit_incomplete;
   }
 
+  const RunCost& cost() const { return cost_; }
+
  private:
   void show() {
     if (picture_) draw();
@@ -147,6 +149,11 @@ class Run {
 
 }  // namespace
 
-int run(const Options& options) { return Run(options)(); }
+int run(const Options& options, RunCost* cost) {
+  Run run(options);
+  const int code = run();
+  if (cost != nullptr) *cost = run.cost();
+  return code;
+}
 
 }  // namespace cosmo

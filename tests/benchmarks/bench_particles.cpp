@@ -8,7 +8,9 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "cosmo_step.h"
 #include "filtered_particles.h"
+#include "frames_vs_count.h"
 #include "measure.h"
 #include "mixed_radii.h"
 #include "paper_variants.h"
@@ -23,6 +25,8 @@ int main(int argc, char** argv) {
   bool frames_only = false;
   bool variants_only = false;
   bool filters_only = false;
+  bool counts_only = false;
+  bool cosmo_only = false;
   bool large = false;
   std::string json;
   std::vector<std::uint64_t> counts;
@@ -34,6 +38,8 @@ int main(int argc, char** argv) {
   app.add_flag("--frames-only", frames_only, "frames without builds");
   app.add_flag("--variants-only", variants_only, "only the paper's structure beside ours");
   app.add_flag("--filters-only", filters_only, "only filters");
+  app.add_flag("--counts-only", counts_only, "only frame rates over the number of particles, 10^5 to 10^7 or 10^8");
+  app.add_flag("--cosmo-only", cosmo_only, "only the share of mini-apps/cosmo that its pictures take");
   app.add_option("--json", json, "write {context, results} to this file");
   app.add_option("--particles", counts, "numbers of particles (default 1000000 and 10000000)");
   app.add_option("--scenes", scenes, "uniform, clustered")->capture_default_str();
@@ -62,7 +68,9 @@ int main(int argc, char** argv) {
   const auto note = [&metrics](const std::map<std::string, double>& speeds) {
     for (const auto& [metric, value] : speeds) metrics.note_speed(metric, value);
   };
-  const bool with_builds = !frames_only && !variants_only && !filters_only;
+  const bool other_only = counts_only || cosmo_only;
+  const bool with_builds = !frames_only && !variants_only && !filters_only && !other_only;
+  if (other_only) counts.clear();
   for (const std::uint64_t count : counts) {
     for (const std::string& name : scenes) {
       const bench::ParticleScene scene = bench::make_scene(name, count);
@@ -81,6 +89,14 @@ int main(int argc, char** argv) {
       measure_paper_variants(frames, scene, teams.back(), variants, report.context()["paper_variants"]);
     }
   }
+  // Neither fits into 45 seconds.
+  const bool whole = !frames.quick && !builds_only && !frames_only && !variants_only && !filters_only;
+  if ((whole && !cosmo_only) || counts_only)
+    measure_frames_vs_count(frames, scenes, large ? 100000000 : 10000000, teams.back(), metrics,
+                            report.context()["frames_vs_log_n"]);
+  if ((whole && !counts_only) || cosmo_only)
+    for (const auto& [metric, value] : bench::measure_cosmo_steps(report.context()["cosmo"]))
+      metrics.note_cost(metric, value);
   if (with_builds) note(measure_melt_rebuild(builds, teams.back(), report.context()["rebuilds"]));
 
   std::printf("\n");

@@ -30,7 +30,7 @@ void Particles::apply_filter(Budget& budget) {
   world.scale = arrays_->position_scale;
   std::copy_n(arrays_->position_origin, 3, world.origin);
   bound_filter_.emplace(filter_, world, [this](const std::string& name) { return attribute(name); });
-  selection_.build(budget, tree_, *bound_filter_);
+  selection_.build(budget, tree_, [this](const FilterBlock& block) { return bound_filter_->word(block); });
   tree_.selected = selection_.places();
   shown_ = selection_.found();
 }

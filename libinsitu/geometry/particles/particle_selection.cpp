@@ -24,8 +24,8 @@ struct LowestLevels {
 template <class Positions>
 class Pass {
  public:
-  Pass(const PkdTree& tree, const BoundFilter& filter, const LowestLevels& out)
-      : tree_(tree), positions_(tree), filter_(filter), out_(out) {}
+  Pass(const PkdTree& tree, const ParticleSelection::Word& word, const LowestLevels& out)
+      : tree_(tree), positions_(tree), word_(word), out_(out) {}
 
   // The blocks of word `number` of the level above theirs.
   void run(std::uint64_t number, ScanResult& found) const {
@@ -36,7 +36,7 @@ class Pass {
     for (std::uint64_t k = first; k < end; ++k) {
       const std::uint64_t begin = FilterBlock::most * k;
       look_up(tree_, begin, std::min(FilterBlock::most, tree_.count - begin), block);
-      const std::uint64_t word = filter_.word(block);
+      const std::uint64_t word = word_(block);
       out_.places[k] = word;
       any |= std::uint64_t{word != 0} << (k - first);
       include(begin, word, block, found);
@@ -62,13 +62,13 @@ class Pass {
 
   const PkdTree& tree_;
   const Positions positions_;
-  const BoundFilter& filter_;
+  const ParticleSelection::Word& word_;
   const LowestLevels out_;
 };
 
 template <class Positions>
-ScanResult select_in(const PkdTree& tree, const BoundFilter& filter, const LowestLevels& out) {
-  const Pass<Positions> pass(tree, filter, out);
+ScanResult select_in(const PkdTree& tree, const ParticleSelection::Word& word, const LowestLevels& out) {
+  const Pass<Positions> pass(tree, word, out);
   const std::uint64_t tasks = SelectedPlaces::words(SelectedPlaces::words(tree.count));
   return tbb::parallel_reduce(
       tbb::blocked_range<std::uint64_t>(0, tasks), nothing_found(),
@@ -80,25 +80,25 @@ ScanResult select_in(const PkdTree& tree, const BoundFilter& filter, const Lowes
       joined);
 }
 
-ScanResult select(const PkdTree& tree, const BoundFilter& filter, const LowestLevels& out) {
+ScanResult select(const PkdTree& tree, const ParticleSelection::Word& word, const LowestLevels& out) {
   switch (layout_of(tree)) {
     case kernels::PkdLayout::placed_f32:
-      return select_in<kernels::PlacedPositions<float>>(tree, filter, out);
+      return select_in<kernels::PlacedPositions<float>>(tree, word, out);
     case kernels::PkdLayout::placed_f64:
-      return select_in<kernels::PlacedPositions<double>>(tree, filter, out);
+      return select_in<kernels::PlacedPositions<double>>(tree, word, out);
     case kernels::PkdLayout::indexed_f32:
-      return select_in<kernels::IndexedPositions<float>>(tree, filter, out);
+      return select_in<kernels::IndexedPositions<float>>(tree, word, out);
     case kernels::PkdLayout::indexed_f64:
-      return select_in<kernels::IndexedPositions<double>>(tree, filter, out);
+      return select_in<kernels::IndexedPositions<double>>(tree, word, out);
     case kernels::PkdLayout::general:
-      return select_in<kernels::GeneralPositions>(tree, filter, out);
+      return select_in<kernels::GeneralPositions>(tree, word, out);
   }
   return nothing_found();
 }
 
 }  // namespace
 
-void ParticleSelection::build(Budget& budget, const PkdTree& tree, const BoundFilter& filter) {
+void ParticleSelection::build(Budget& budget, const PkdTree& tree, const ParticleSelection::Word& word) {
   // A set without particles has a word of its own all the same: it says that none is drawn.
   std::uint64_t begin[SelectedPlaces::most_levels];
   std::uint64_t sizes[SelectedPlaces::most_levels];
@@ -114,7 +114,7 @@ void ParticleSelection::build(Budget& budget, const PkdTree& tree, const BoundFi
   words_.reset(budget, total, "the filter of the particles");
   std::uint64_t* const words = words_.data();
   words[0] = 0;
-  found_ = select(tree, filter, {words, levels > 1 ? words + begin[1] : nullptr});
+  found_ = select(tree, word, {words, levels > 1 ? words + begin[1] : nullptr});
   for (unsigned l = 2; l < levels; ++l) {
     for (std::uint64_t number = 0; number < sizes[l]; ++number) {
       std::uint64_t any = 0;

@@ -1,6 +1,8 @@
 // Which places of a built tree a filter has left: a bit each, and the bounds of these particles.
 #pragma once
 
+#include <functional>
+
 #include "core/budget.h"
 #include "geometry/filter/filter.h"
 #include "geometry/particles/particle_scan.h"
@@ -10,8 +12,13 @@ namespace insitu {
 
 class ParticleSelection {
  public:
+  // Bit i: the particle at place i of the block is to be drawn.
+  using Word = std::function<std::uint64_t(const FilterBlock&)>;
+
   // One pass over all places, with as many threads as the caller's TBB arena has. Throws Error(over_budget).
-  void build(Budget& budget, const kernels::PkdTree& tree, const BoundFilter& filter);
+  void build(Budget& budget, const kernels::PkdTree& tree, const Word& word);
+  // At most, of so many places.
+  static std::uint64_t bytes_for(std::uint64_t places) { return places / 7 + 128; }
   void clear();
 
   // All of them before build(), and after clear().

@@ -108,6 +108,7 @@ void Particles::release() {
   moved_.clear();
   tree_ = {};
   treelets_ = {};
+  size_classes_.clear();
   bound_filter_.reset();
 }
 
@@ -126,6 +127,7 @@ void Particles::build(Budget& budget) {
     scan.radius_max = tree_.radius.uniform;
   }
   all_ = scan;
+  size_limit_ = arrays.treelet_share > 0.0 ? size_limit(tree_, all_) : std::numeric_limits<double>::infinity();
   if (!is_good_root(root_, scan)) root_ = root_around(scan);
   std::copy_n(root_.lower, 3, tree_.lower);
   std::copy_n(root_.upper, 3, tree_.upper);
@@ -155,12 +157,9 @@ void Particles::build(Budget& budget) {
   built_ = true;
 }
 
-// How many particles a treelet holds at most: measured, docs/results. Through an index every particle is a read of its
-// own, so that fewer boxes with more particles would cost more.
-constexpr double most_per_treelet = 16.0;
-
 void Particles::plan_treelets(const Budget& budget) {
   treelet_nodes_.clear();  // the index and the copy come first
+  size_classes_.clear();
   treelets_ = treelet_shape(tree_.count, treelet_depth(tree_.count, most_per_treelet, treelet_room(budget)));
   if (!treelets_.exist()) return;
   while (tree_.built_leaf > 1 && tree_.built_leaf > tree_.count / treelets_.count) tree_.built_leaf /= 2;
@@ -170,7 +169,7 @@ std::uint64_t Particles::treelet_room(const Budget& budget) const {
   const double position_bytes =
       static_cast<double>(tree_.count) * static_cast<double>(3 * kernels::size_of(tree_.position.type));
   const double share = std::min(arrays_->treelet_share * position_bytes, 9e18);
-  const std::uint64_t held = treelet_nodes_.bytes();
+  const std::uint64_t held = treelet_bytes();
   const std::uint64_t left = budget.left() > ~std::uint64_t{0} - held ? ~std::uint64_t{0} : budget.left() + held;
   return std::min(static_cast<std::uint64_t>(share), left);
 }
@@ -178,6 +177,8 @@ std::uint64_t Particles::treelet_room(const Budget& budget) const {
 void Particles::add_treelets(Budget& budget) {
   // Longer ones where the tree itself has taken the room meanwhile, and where a filter leaves few particles of a run.
   const std::uint64_t room = treelet_room(budget);
+  treelets_ = {};
+  if (size_classes_.build(budget, tree_, bound_filter(), size_limit_, room)) return treelet_nodes_.clear();
   const double most = std::ldexp(most_per_treelet, static_cast<int>(tree_.selected.thinning));
   treelets_ = treelet_shape(tree_.count, treelet_depth(tree_.count, most, room));
   if (!treelets_.exist()) return treelet_nodes_.clear();
@@ -365,11 +366,13 @@ constexpr std::size_t batch = 256;
 }  // namespace
 
 void Particles::trace_first_hits(const kernels::Ray* rays, kernels::Hit* hits, std::size_t count) const {
+  if (size_classes_.exist()) return size_classes_.first_hits(rays, hits, count);
   if (treelets_.exist()) return kernels::treelet_first_hits(tree_, treelets_, rays, hits, count);
   kernels::pkd_first_hits(tree_, rays, hits, count);
 }
 
 void Particles::trace_any_hits(const kernels::Ray* rays, std::uint8_t* occluded, std::size_t count) const {
+  if (size_classes_.exist()) return size_classes_.any_hits(rays, occluded, count);
   if (treelets_.exist()) return kernels::treelet_any_hits(tree_, treelets_, rays, occluded, count);
   kernels::pkd_any_hits(tree_, rays, occluded, count);
 }

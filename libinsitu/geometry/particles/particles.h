@@ -13,6 +13,7 @@
 #include "geometry/geometry.h"
 #include "geometry/particles/particle_copies.h"
 #include "geometry/particles/particle_selection.h"
+#include "geometry/particles/size_classes.h"
 #include "geometry/pkd/pkd_build.h"
 #include "geometry/transparent_geometry.h"
 #include "kernels/pkd_tree.h"
@@ -84,9 +85,11 @@ class Particles : public TransparentGeometry {
   double shown_radius_max() const { return shown_.radius_max; }
   std::uint64_t borrowed_bytes() const;
   std::uint64_t copied_bytes() const { return copy_.bytes(); }
-  std::uint64_t treelet_bytes() const { return treelet_nodes_.bytes(); }
+  std::uint64_t treelet_bytes() const { return treelet_nodes_.bytes() + size_classes_.bytes(); }
+  std::uint64_t treelet_count() const { return treelets_.count + size_classes_.treelet_count(); }
   // 0 when there are none.
   double particles_per_treelet() const;
+  bool has_size_classes() const { return size_classes_.exist(); }
   std::uint64_t index_bytes() const { return index32_.bytes() + index64_.bytes(); }
 
   // Of what the filter leaves: world space, radii included; lower > upper when nothing is drawn.
@@ -164,6 +167,8 @@ class Particles : public TransparentGeometry {
   BudgetVector<std::uint64_t> index64_;
   kernels::Treelets treelets_;  // none when the tree is traced alone
   BudgetVector<kernels::TreeletNode> treelet_nodes_;
+  double size_limit_ = 0.0;       // radius from which particles count as large
+  SizeClasses size_classes_;      // instead of treelets_, where radii are very different
   BudgetVector<std::byte> copy_;  // packed positions in tree order
   std::shared_ptr<const Filter> filter_;
   std::optional<BoundFilter> bound_filter_;  // while its selection is in force

@@ -9,6 +9,10 @@
 
 namespace insitu {
 
+// How many particles a treelet holds at most: measured, docs/results. Through an index every particle is a read of its
+// own, so that fewer boxes with more particles would cost more.
+constexpr double most_per_treelet = 16.0;
+
 // The shape of the nodes over 2^depth treelets; `nodes` is not set.
 kernels::Treelets treelet_shape(std::uint64_t particles, unsigned depth);
 std::uint64_t treelet_bytes(std::uint64_t particles, unsigned depth);
