@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
   std::vector<std::uint64_t> counts;
   std::vector<std::string> scenes = {"uniform", "clustered"};
   app.add_flag("--quick", frames.quick,
-               "1M particles, 512 x 512 pixels, one build quality, 3 repetitions: within 45 s");
+               "1M particles, 448 x 448 pixels, one build quality, 3 repetitions: within 45 s");
   app.add_flag("--large", large, "100 million particles as well");
   app.add_flag("--builds-only", builds_only, "builds without frames");
   app.add_flag("--frames-only", frames_only, "frames without builds");
@@ -51,7 +51,7 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   if (frames.quick) {
     frames.repetitions = std::min(frames.repetitions, 3);
-    frames.image_edge_px = 512;
+    frames.image_edge_px = 448;
   }
   if (counts.empty())
     counts = frames.quick ? std::vector<std::uint64_t>{1000000} : std::vector<std::uint64_t>{1000000, 10000000};
