@@ -17,9 +17,10 @@ kernels::PkdBox<typename Store::Key> bounds_of_places(const Store& store, std::u
     box.upper[axis] = -box.lower[axis];
   }
   if (begin == end) return box;
-  if (const Key* records = store.records(begin); records != nullptr) {
+  if (store.is_packed()) {
     // They are drawn.
-    kernels::bounds_of_finite_records(records, static_cast<std::size_t>(end - begin), box.lower, box.upper);
+    kernels::bounds_of_finite_records(store.records(begin), static_cast<std::size_t>(end - begin), box.lower,
+                                      box.upper);
     return box;
   }
   for (std::uint64_t place = begin; place < end; ++place) {

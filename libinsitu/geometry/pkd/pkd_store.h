@@ -3,7 +3,8 @@
 // Beside what kernels/pkd_exchange.h asks of a Store:
 //   KeyRun<Key> keys(begin, count, axis, buffer)   coordinates of places, where they are or in `buffer`; count <=
 //                                                  most_keys
-//   const Key* records(begin)          packed x y z x y z ... from that place on; nullptr where they are not packed
+//   bool is_packed()                   coordinates stand as x y z x y z ...
+//   const Key* records(begin)          if they do: from that place on
 //   void prefetch(begin, count)        asks for coordinates from memory; places behind the last one may be named
 //   void swap(a, b)
 //   bool prefer(a, b)                  the particle at place a is to be shown rather than the coincident one at b
@@ -62,6 +63,7 @@ class IndexStore {
   KeyRun<Key> keys(std::uint64_t begin, std::size_t count, int axis, Key* buffer) const {
     return gather_keys(positions_, begin, count, axis, buffer);
   }
+  static constexpr bool is_packed() { return false; }
   static constexpr const Key* records(std::uint64_t) { return nullptr; }
   void prefetch(std::uint64_t, std::uint64_t) const {}
   Key key(std::uint64_t place, int axis) const { return positions_.key(place, axis); }
@@ -107,6 +109,7 @@ class PackedStore {
   KeyRun<Key> keys(std::uint64_t begin, std::size_t, int axis, Key*) const {
     return {records_[begin].x, 3, false, axis};
   }
+  static constexpr bool is_packed() { return true; }
   const Key* records(std::uint64_t begin) const { return records_[begin].x; }
   void prefetch(std::uint64_t begin, std::uint64_t count) const {
     const auto* const bytes = reinterpret_cast<const char*>(records_) + begin * sizeof(PkdRecord<K>);
@@ -185,9 +188,12 @@ class ColumnsStore {
     }
     return gather_keys(positions_, begin, count, axis, buffer);
   }
+  bool is_packed() const {
+    if constexpr (std::is_same_v<Positions, kernels::PlacedPositions<Key>>) return positions_.packed_records();
+    return false;
+  }
   const Key* records(std::uint64_t begin) const {
-    if constexpr (std::is_same_v<Positions, kernels::PlacedPositions<Key>>)
-      if (positions_.packed_records()) return positions_.scalars(begin, 0);
+    if constexpr (std::is_same_v<Positions, kernels::PlacedPositions<Key>>) return positions_.scalars(begin, 0);
     return nullptr;
   }
   void prefetch(std::uint64_t begin, std::uint64_t count) const {
