@@ -8,13 +8,11 @@
 #include <random>
 
 #include "measure.h"
-#include "own_particles.h"
-#include "ray_tiles.h"
+#include "own_frame.h"
 
 namespace bench {
 namespace {
 
-using insitu::kernels::Hit;
 using insitu::kernels::Ray;
 
 constexpr double left_share = 0.1;
@@ -64,7 +62,6 @@ ParticleScene left_of(const ParticleScene& scene, double value) {
 struct Frame {
   std::string name;
   std::unique_ptr<OwnParticles> own;
-  std::vector<Ray> ao;
 };
 
 void measure_views(const FrameOptions& options, const ParticleScene& scene, bool smooth, insitu::Workers& workers,
@@ -76,10 +73,8 @@ void measure_views(const FrameOptions& options, const ParticleScene& scene, bool
   for (const bool with_treelets : {true, false}) {
     for (const bool filtered : {true, false}) {
       const std::string name = std::string(with_treelets ? "treelet" : "pkd") + (filtered ? " filtered" : " alone");
-      frames.push_back({name,
-                        std::make_unique<OwnParticles>(filtered ? whole : left, insitu::ParticleOrder::permute,
-                                                       with_treelets ? options.treelet_share : 0.0),
-                        {}});
+      frames.push_back({name, std::make_unique<OwnParticles>(filtered ? whole : left, insitu::ParticleOrder::permute,
+                                                             with_treelets ? options.treelet_share : 0.0)});
       OwnParticles& own = *frames.back().own;
       if (filtered) own.filter(above(value));
       workers.run([&] { own.build(); });
@@ -87,28 +82,11 @@ void measure_views(const FrameOptions& options, const ParticleScene& scene, bool
   }
   for (const char* view : {"far", "close"}) {
     const std::vector<Ray> camera = camera_rays(view, std::min(options.image_edge_px, options.quick ? 384u : 512u));
-    std::vector<Hit> hits(camera.size());
-    std::vector<std::uint8_t> occluded(camera.size());
+    std::vector<std::unique_ptr<OwnFrame>> views;
     std::vector<Contender> contenders;
-    for (Frame& frame : frames) {
-      std::fill(hits.begin(), hits.end(), Hit{});
-      frame.own->set().first_hits(camera.data(), hits.data(), camera.size());
-      frame.ao = occlusion_rays(camera, hits, frame.own->position, options.ao_reach);
-      contenders.push_back({frame.name,
-                            [&] {
-                              std::fill(hits.begin(), hits.end(), Hit{});
-                              std::fill(occluded.begin(), occluded.end(), 0);
-                            },
-                            [&] {
-                              workers.run([&] {
-                                for_tiles(camera.size(), [&](std::size_t begin, std::size_t n) {
-                                  frame.own->set().first_hits(&camera[begin], &hits[begin], n);
-                                });
-                                for_tiles(frame.ao.size(), [&](std::size_t begin, std::size_t n) {
-                                  frame.own->set().any_hits(&frame.ao[begin], &occluded[begin], n);
-                                });
-                              });
-                            }});
+    for (const Frame& frame : frames) {
+      views.push_back(std::make_unique<OwnFrame>(*frame.own, camera, options.ao_reach));
+      contenders.push_back(views.back()->contender(frame.name, workers));
     }
     // Frames of a tenth of the particles are short: more of them.
     const std::vector<double> s = take_turns(contenders, options.repetitions + 2);
@@ -128,7 +106,7 @@ void measure_views(const FrameOptions& options, const ParticleScene& scene, bool
                                   {"view", view},
                                   {"left_by", smooth ? "field" : "chance"},
                                   {"camera_rays", camera.size()},
-                                  {"ao_rays", frames[0].ao.size()}};
+                                  {"ao_rays", views[0]->ao_rays()}};
     for (std::size_t i = 0; i < contenders.size(); ++i) row["seconds"][contenders[i].name] = s[i];
     rows.push_back(row);
   }

@@ -7,14 +7,11 @@
 #include <fstream>
 #include <string>
 
-#include "measure.h"
-#include "own_particles.h"
-#include "ray_tiles.h"
+#include "own_frame.h"
 
 namespace bench {
 namespace {
 
-using insitu::kernels::Hit;
 using insitu::kernels::Ray;
 
 // VmHWM of Linux: the most memory that the process has held so far.
@@ -44,26 +41,8 @@ Rates measure_one(const FrameOptions& options, const ParticleScene& scene, doubl
   rates.extra_bytes = static_cast<double>(own.set().treelet_bytes());
   for (const char* view : {"far", "close"}) {
     const std::vector<Ray> camera = camera_rays(view, options.image_edge_px);
-    std::vector<Hit> hits(camera.size());
-    own.set().first_hits(camera.data(), hits.data(), camera.size());
-    const std::vector<Ray> ao = occlusion_rays(camera, hits, own.position, options.ao_reach);
-    std::vector<std::uint8_t> occluded(ao.size());
-    const double seconds = take_turns({{"frame",
-                                        [&] {
-                                          std::fill(hits.begin(), hits.end(), Hit{});
-                                          std::fill(occluded.begin(), occluded.end(), 0);
-                                        },
-                                        [&] {
-                                          workers.run([&] {
-                                            for_tiles(camera.size(), [&](std::size_t begin, std::size_t n) {
-                                              own.set().first_hits(&camera[begin], &hits[begin], n);
-                                            });
-                                            for_tiles(ao.size(), [&](std::size_t begin, std::size_t n) {
-                                              own.set().any_hits(&ao[begin], &occluded[begin], n);
-                                            });
-                                          });
-                                        }}},
-                                      options.repetitions)[0];
+    OwnFrame frame(own, camera, options.ao_reach);
+    const double seconds = take_turns({frame.contender("frame", workers)}, options.repetitions)[0];
     rates.frames_per_s[view] = 1.0 / seconds;
   }
   return rates;

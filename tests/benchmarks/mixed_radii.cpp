@@ -6,13 +6,11 @@
 #include <memory>
 
 #include "measure.h"
-#include "own_particles.h"
-#include "ray_tiles.h"
+#include "own_frame.h"
 
 namespace bench {
 namespace {
 
-using insitu::kernels::Hit;
 using insitu::kernels::Ray;
 
 constexpr std::size_t large_every = 100;
@@ -32,7 +30,6 @@ ParticleScene with_radii(const ParticleScene& scene, bool mixed) {
 struct Frame {
   std::string name;
   std::unique_ptr<OwnParticles> own;
-  std::vector<Ray> ao;
 };
 
 }  // namespace
@@ -44,35 +41,17 @@ void measure_mixed_radii(const FrameOptions& options, const ParticleScene& scene
     for (const bool mixed : {true, false}) {
       frames.push_back({std::string(with_treelets ? "treelet" : "pkd") + (mixed ? " mixed" : " equal"),
                         std::make_unique<OwnParticles>(with_radii(scene, mixed), insitu::ParticleOrder::permute,
-                                                       with_treelets ? options.treelet_share : 0.0),
-                        {}});
+                                                       with_treelets ? options.treelet_share : 0.0)});
       workers.run([&] { frames.back().own->build(); });
     }
   }
   for (const char* view : {"far", "close"}) {
     const std::vector<Ray> camera = camera_rays(view, std::min(options.image_edge_px, 512u));
-    std::vector<Hit> hits(camera.size());
-    std::vector<std::uint8_t> occluded(camera.size());
+    std::vector<std::unique_ptr<OwnFrame>> views;
     std::vector<Contender> contenders;
-    for (Frame& frame : frames) {
-      std::fill(hits.begin(), hits.end(), Hit{});
-      frame.own->set().first_hits(camera.data(), hits.data(), camera.size());
-      frame.ao = occlusion_rays(camera, hits, frame.own->position, options.ao_reach);
-      contenders.push_back({frame.name,
-                            [&] {
-                              std::fill(hits.begin(), hits.end(), Hit{});
-                              std::fill(occluded.begin(), occluded.end(), 0);
-                            },
-                            [&] {
-                              workers.run([&] {
-                                for_tiles(camera.size(), [&](std::size_t begin, std::size_t n) {
-                                  frame.own->set().first_hits(&camera[begin], &hits[begin], n);
-                                });
-                                for_tiles(frame.ao.size(), [&](std::size_t begin, std::size_t n) {
-                                  frame.own->set().any_hits(&frame.ao[begin], &occluded[begin], n);
-                                });
-                              });
-                            }});
+    for (const Frame& frame : frames) {
+      views.push_back(std::make_unique<OwnFrame>(*frame.own, camera, options.ao_reach));
+      contenders.push_back(views.back()->contender(frame.name, workers));
     }
     const std::vector<double> s = take_turns(contenders, options.repetitions);
     std::printf("%-9s %4.1fM %-5s mixed over equal radii: treelets %.2f, tree alone %.2f\n", scene.name.c_str(),
