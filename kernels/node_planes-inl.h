@@ -18,8 +18,9 @@ namespace insitu::kernels::HWY_NAMESPACE {
 struct alignas(64) WalkRay {
   float start[3];  // - origin / direction
   float inverse[3];
-  float origin[3];
   float direction[3];
+  float moment[3];  // origin x direction
+  float foot;       // origin . direction
   float t_low;
   float t_high;  // nothing behind it counts; -infinity once the ray needs no more
 };

@@ -12,21 +12,55 @@
 HWY_BEFORE_NAMESPACE();
 namespace insitu::kernels::HWY_NAMESPACE {
 
-// Asks for what a leaf reads: of records, a line of memory holds five; where an index stands before them, it comes
-// first, sixteen to a line.
-template <class Positions>
-HWY_INLINE void PrefetchRun(const Positions& positions, std::uint64_t begin, std::uint64_t end) {
-  constexpr std::uint64_t per_line = Positions::is_indirect ? 16 : 5;
-  for (std::uint64_t place = begin; place < end; place += per_line) positions.prefetch(place);
-  if (begin < end) positions.prefetch(end - 1);
-}
+// Where an index stands before the coordinates of a run, asking for it (prefetch_run) comes first.
 template <class Positions>
 HWY_INLINE void PrefetchRunBehind(const Positions& positions, std::uint64_t begin, std::uint64_t end) {
   if constexpr (Positions::is_indirect)
     for (std::uint64_t place = begin; place < end; ++place) positions.prefetch_behind(place);
 }
 
-// Particles that stand at consecutive places.
+// A vector of coordinates that follow each other, and of records x y z x y z ...; doubles are rounded.
+template <class D>
+HWY_INLINE hn::Vec<D> LoadColumn(D d, const float* from) {
+  return hn::LoadU(d, from);
+}
+template <class D, class V>
+HWY_INLINE void LoadRecords(D d, const float* from, V& x, V& y, V& z) {
+  hn::LoadInterleaved3(d, from, x, y, z);
+}
+#if HWY_TARGET == HWY_SCALAR
+template <class D>
+HWY_INLINE hn::Vec<D> LoadColumn(D d, const double* from) {
+  return hn::Set(d, static_cast<float>(*from));
+}
+template <class D, class V>
+HWY_INLINE void LoadRecords(D d, const double* from, V& x, V& y, V& z) {
+  x = LoadColumn(d, from);
+  y = LoadColumn(d, from + 1);
+  z = LoadColumn(d, from + 2);
+}
+#else
+template <class D>
+HWY_INLINE hn::Vec<D> LoadColumn(D d, const double* from) {
+  const hn::Half<D> half;
+  const hn::Rebind<double, decltype(half)> wide;
+  return hn::Combine(d, hn::DemoteTo(half, hn::LoadU(wide, from + hn::Lanes(wide))),
+                     hn::DemoteTo(half, hn::LoadU(wide, from)));
+}
+template <class D, class V>
+HWY_INLINE void LoadRecords(D d, const double* from, V& x, V& y, V& z) {
+  const hn::Half<D> half;
+  const hn::Rebind<double, decltype(half)> wide;
+  hn::Vec<decltype(wide)> low[3], high[3];
+  hn::LoadInterleaved3(wide, from, low[0], low[1], low[2]);
+  hn::LoadInterleaved3(wide, from + 3 * hn::Lanes(wide), high[0], high[1], high[2]);
+  x = hn::Combine(d, hn::DemoteTo(half, high[0]), hn::DemoteTo(half, low[0]));
+  y = hn::Combine(d, hn::DemoteTo(half, high[1]), hn::DemoteTo(half, low[1]));
+  z = hn::Combine(d, hn::DemoteTo(half, high[2]), hn::DemoteTo(half, low[2]));
+}
+#endif
+
+// Particles that stand at consecutive places (`is_run`).
 template <class Positions>
 class ParticleRun {
  public:
@@ -40,6 +74,7 @@ class ParticleRun {
 
   HWY_INLINE std::size_t size() const { return size_; }
   HWY_INLINE std::uint64_t place(std::size_t i) const { return begin_ + i; }
+  static constexpr bool is_run = true;
   // Bit i: particle first + i is drawn; of `count`, at most a vector of them.
   static constexpr bool is_filtered = false;
   HWY_INLINE std::uint32_t Drawn(std::size_t, std::size_t count) const { return ~std::uint32_t{0} >> (32 - count); }
@@ -50,15 +85,14 @@ class ParticleRun {
   template <class D, class V>
   HWY_INLINE void Load(D d, std::size_t first, std::size_t count, V& x, V& y, V& z) const {
     const std::uint64_t begin = begin_ + first;
-    if constexpr (std::is_same_v<Positions, PlacedPositions<float>>) {
+    if constexpr (Positions::may_be_packed) {
       // What stands behind the run is read along, as far as there is something, and left alone.
       if (HWY_LIKELY(begin + hn::Lanes(d) <= tree_.position.count)) {
-        if (HWY_LIKELY(positions_.packed_records()))
-          return hn::LoadInterleaved3(d, positions_.scalars(begin, 0), x, y, z);
+        if (HWY_LIKELY(positions_.packed_records())) return LoadRecords(d, positions_.scalars(begin, 0), x, y, z);
         if (positions_.packed_columns()) {
-          x = hn::LoadU(d, positions_.scalars(begin, 0));
-          y = hn::LoadU(d, positions_.scalars(begin, 1));
-          z = hn::LoadU(d, positions_.scalars(begin, 2));
+          x = LoadColumn(d, positions_.scalars(begin, 0));
+          y = LoadColumn(d, positions_.scalars(begin, 1));
+          z = LoadColumn(d, positions_.scalars(begin, 2));
           return;
         }
       }
@@ -101,6 +135,7 @@ class ParticlePick {
 
   HWY_INLINE std::size_t size() const { return size_; }
   HWY_INLINE std::uint64_t place(std::size_t i) const { return places_[i]; }
+  static constexpr bool is_run = false;
   static constexpr bool is_filtered = false;
   HWY_INLINE std::uint32_t Drawn(std::size_t, std::size_t count) const { return ~std::uint32_t{0} >> (32 - count); }
   HWY_INLINE void Centre(std::size_t i, float out[3]) const {
@@ -195,6 +230,7 @@ class CopiedRun {
 
   HWY_INLINE std::size_t size() const { return size_; }
   HWY_INLINE std::uint64_t place(std::size_t i) const { return copies_.place_of[begin_ + i]; }
+  static constexpr bool is_run = false;
   static constexpr bool is_filtered = false;
   HWY_INLINE std::uint32_t Drawn(std::size_t, std::size_t count) const { return ~std::uint32_t{0} >> (32 - count); }
   HWY_INLINE void Centre(std::size_t i, float out[3]) const {
@@ -205,10 +241,9 @@ class CopiedRun {
     hn::LoadInterleaved3(d, copies_.centres + 3 * (begin_ + first), x, y, z);
   }
   HWY_INLINE void Prefetch() const {
-    constexpr std::size_t per_line = 5;
-    for (std::size_t i = 0; i < size_; i += per_line) __builtin_prefetch(copies_.centres + 3 * (begin_ + i));
-    __builtin_prefetch(copies_.place_of + begin_);
-    if (size_ > 0) __builtin_prefetch(copies_.place_of + begin_ + size_ - 1);
+    if (size_ == 0) return;
+    prefetch_bytes(copies_.centres + 3 * begin_, 3 * size_ * sizeof *copies_.centres);
+    prefetch_bytes(copies_.place_of + begin_, size_ * sizeof *copies_.place_of);
   }
 
  private:
@@ -217,7 +252,7 @@ class CopiedRun {
   std::size_t size_;
 };
 
-// What a walk under a filter will read of a leaf, as PrefetchRun and PrefetchRunBehind without one.
+// What a walk under a filter will read of a leaf, as prefetch_run() and PrefetchRunBehind without one.
 template <class Positions>
 HWY_NOINLINE void PrefetchDrawn(const PkdTree& tree, const Positions& positions, std::uint64_t begin,
                                 std::uint64_t end) {
@@ -238,7 +273,17 @@ class ParticleTests {
   static constexpr std::size_t most_lanes = 16;
 
   ParticleTests(const PkdTree& tree, double margin)
-      : tree_(tree), margin_(margin), uniform_(tree.radius.kind == RadiusView::Kind::uniform) {
+      : tree_(tree),
+        margin_above_(static_cast<float>(margin * (1.0 + 2.0 * f32_unit))),
+        uniform_(tree.radius.kind == RadiusView::Kind::uniform) {
+    const ArrayView& radii = tree.radius.array;
+    const bool by_place = tree.index32 == nullptr && tree.index64 == nullptr;
+    if (tree.radius.kind == RadiusView::Kind::per_item && by_place && !radii.rows &&
+        radii.stride == static_cast<std::ptrdiff_t>(size_of(radii.type)) &&
+        (radii.type == Scalar::f32 || radii.type == Scalar::f64)) {
+      packed_radii_ = radii.base[0];
+      packed_in_f32_ = radii.type == Scalar::f32;
+    }
     const double wide = tree.radius.uniform + margin;
     const double inner = std::max(tree.radius.uniform - margin, 0.0);
     inner2_ = static_cast<float>(inner * inner * (1.0 - 8.0 * f32_unit));
@@ -266,25 +311,25 @@ class ParticleTests {
       V r2 = hn::Set(d, radius2_);
       V inner2 = hn::Set(d, inner2_);
       if (HWY_UNLIKELY(!uniform_)) {
-        HWY_ALIGN float radii2[2][most_lanes] = {};
-        for (std::size_t i = 0; i < count; ++i) {
-          const double radius = tree_.radius.value(tree_.item(particles.place(first + i)));
-          const double wide = radius + margin_;
-          const double inner = std::max(radius - margin_, 0.0);
-          radii2[0][i] = static_cast<float>(wide * wide * (1.0 + 8.0 * f32_unit));
-          radii2[1][i] = static_cast<float>(inner * inner * (1.0 - 8.0 * f32_unit));
-        }
-        r2 = hn::Load(d, radii2[0]);
-        inner2 = hn::Load(d, radii2[1]);
+        const V radius = RadiiOf(d, particles, first, count);
+        const V wide = Wide(d, radius);
+        const V inner = hn::Max(hn::Sub(hn::Mul(radius, hn::Set(d, below_)), hn::Set(d, margin_above_)), hn::Zero(d));
+        r2 = hn::Mul(hn::Mul(wide, wide), hn::Set(d, above_));
+        inner2 = hn::Mul(hn::Mul(inner, inner), hn::Set(d, below_));
       }
       for (std::size_t i = 0; i < list_size; ++i) {
         const auto& ray = rays[list[i]];
-        const auto [b, distance2] =
-            ApproachOf(hn::Sub(x, hn::Set(d, ray.origin[0])), hn::Sub(y, hn::Set(d, ray.origin[1])),
-                       hn::Sub(z, hn::Set(d, ray.origin[2])), hn::Set(d, ray.direction[0]),
-                       hn::Set(d, ray.direction[1]), hn::Set(d, ray.direction[2]));
+        // By the moment of the line (docs/math/particles.md): less to do than ApproachOf() for what is not close.
+        const V dx = hn::Set(d, ray.direction[0]);
+        const V dy = hn::Set(d, ray.direction[1]);
+        const V dz = hn::Set(d, ray.direction[2]);
+        const V px = hn::NegMulAdd(z, dy, hn::MulSub(y, dz, hn::Set(d, ray.moment[0])));
+        const V py = hn::NegMulAdd(x, dz, hn::MulSub(z, dx, hn::Set(d, ray.moment[1])));
+        const V pz = hn::NegMulAdd(y, dx, hn::MulSub(x, dy, hn::Set(d, ray.moment[2])));
+        const V distance2 = hn::MulAdd(px, px, hn::MulAdd(py, py, hn::Mul(pz, pz)));
         const auto close = hn::Le(distance2, r2);
         if (HWY_LIKELY(hn::AllFalse(d, close))) continue;
+        const V b = hn::MulAdd(x, dx, hn::MulAdd(y, dy, hn::MulSub(z, dz, hn::Set(d, ray.foot))));
         const V s = hn::Sqrt(hn::Max(hn::Sub(r2, distance2), hn::Zero(d)));
         const V t_high = hn::Set(d, ray.t_high);
         const V t_low = hn::Set(d, ray.t_low);
@@ -322,11 +367,8 @@ class ParticleTests {
       V r = hn::Set(d, radius_);
       HWY_ALIGN float radii[most_lanes];
       if (HWY_UNLIKELY(!uniform_)) {
-        for (std::size_t i = 0; i < count; ++i)
-          radii[i] = static_cast<float>((tree_.radius.value(tree_.item(particles.place(first + i))) + margin_) *
-                                        (1.0 + 4.0 * f32_unit));
-        for (std::size_t i = count; i < most_lanes; ++i) radii[i] = 0.0f;
-        r = hn::Load(d, radii);
+        r = Wide(d, RadiiOf(d, particles, first, count));
+        hn::Store(r, d, radii);
       }
       const auto [b, distance2] =
           ApproachOf(hn::Sub(x, hn::Set(d, beam.origin[0])), hn::Sub(y, hn::Set(d, beam.origin[1])),
@@ -347,9 +389,36 @@ class ParticleTests {
   }
 
  private:
+  // In f32, off by at most four units each: one for the radius, one for the scale, one for each operation. Lanes behind
+  // `count` hold anything.
+  template <class D, class Particles>
+  HWY_INLINE hn::Vec<D> RadiiOf(D d, const Particles& particles, std::size_t first, std::size_t count) const {
+    if constexpr (Particles::is_run) {
+      const std::uint64_t begin = particles.place(first);
+      if (packed_radii_ != nullptr && begin + hn::Lanes(d) <= tree_.position.count) {
+        const hn::Vec<D> scale = hn::Set(d, static_cast<float>(tree_.radius.scale));
+        return hn::Mul(scale, packed_in_f32_ ? LoadColumn(d, reinterpret_cast<const float*>(packed_radii_) + begin)
+                                             : LoadColumn(d, reinterpret_cast<const double*>(packed_radii_) + begin));
+      }
+    }
+    HWY_ALIGN float radii[most_lanes] = {};
+    for (std::size_t i = 0; i < count; ++i)
+      radii[i] = static_cast<float>(tree_.radius.value(tree_.item(particles.place(first + i))));
+    return hn::Load(d, radii);
+  }
+  // Not less than radius and margin in truth.
+  template <class D, class V>
+  HWY_INLINE V Wide(D d, V radius) const {
+    return hn::Mul(hn::Add(radius, hn::Set(d, margin_above_)), hn::Set(d, above_));
+  }
+
   const PkdTree& tree_;
-  double margin_;
+  float margin_above_;
+  float above_ = static_cast<float>(1.0 + 8.0 * f32_unit);
+  float below_ = static_cast<float>(1.0 - 8.0 * f32_unit);
   bool uniform_;
+  const std::byte* packed_radii_ = nullptr;  // by place, where the arrays have them so
+  bool packed_in_f32_ = false;
   float radius_;
   float radius2_;
   float inner2_;  // of the sphere without its margin

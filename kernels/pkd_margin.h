@@ -13,9 +13,9 @@ constexpr double f32_unit = 5.9604644775390625e-8;
 constexpr double f64_unit = 1.1102230246251565e-16;
 
 // Whole trees in f32: rays start at the point where they enter the box of the tree, rounded to f32, and `value` covers
-// that rounding and those of pkd_leaf-inl.h for reach = twice the size of the box. While the margin is below the
-// largest radius this is the fast way: at worst four times as many candidates as hits have to be confirmed. Smaller
-// particles get a frame for every leaf.
+// that rounding and those of the tests (docs/math/particles.md). While the margin is below the largest radius this is
+// the fast way: at worst four times as many candidates as hits have to be confirmed. Smaller particles get a frame for
+// every leaf.
 struct TreeMargin {
   double value;
   double extent;  // diagonal of the tree

@@ -3,8 +3,16 @@
 #pragma once
 
 #include "kernels/pkd_tree.h"
+#include "kernels/prefetch.h"
 
 namespace insitu::kernels {
+
+// Whether the coordinates of an item stand too far from each other to come with one line of memory.
+inline bool are_apart(const std::byte* const base[3]) {
+  for (int c = 1; c < 3; ++c)
+    if (base[c] < base[0] || base[c] - base[0] >= memory_line) return true;
+  return false;
+}
 
 // f32 or f64 in tree order: record i of the tree is record i of the arrays.
 template <class T>
@@ -18,13 +26,25 @@ class PlacedPositions {
     constexpr auto size = static_cast<std::ptrdiff_t>(sizeof(T));
     records_ = stride_ == 3 * size && base_[1] == base_[0] + size && base_[2] == base_[1] + size;
     columns_ = stride_ == size;
+    apart_ = are_apart(base_);
   }
   T key(std::uint64_t place, int axis) const {
     return load<T>(base_[axis] + static_cast<std::ptrdiff_t>(place) * stride_);
   }
   static constexpr bool is_indirect = false;
+  static constexpr bool may_be_packed = true;  // see packed_records()
   void prefetch(std::uint64_t place) const {
-    __builtin_prefetch(base_[0] + static_cast<std::ptrdiff_t>(place) * stride_);
+    const std::ptrdiff_t offset = static_cast<std::ptrdiff_t>(place) * stride_;
+    prefetch_line(base_[0] + offset);
+    if (!apart_) return;
+    prefetch_line(base_[1] + offset);
+    prefetch_line(base_[2] + offset);
+  }
+  void prefetch_run(std::uint64_t begin, std::uint64_t end) const {
+    if (begin >= end) return;
+    const std::ptrdiff_t offset = static_cast<std::ptrdiff_t>(begin) * stride_;
+    if (!apart_) return prefetch_items(base_[0] + offset, end - begin, stride_, 3 * sizeof(T));
+    for (const std::byte* base : base_) prefetch_items(base + offset, end - begin, stride_, sizeof(T));
   }
   void centre(std::uint64_t place, double out[3]) const {
     for (int c = 0; c < 3; ++c) out[c] = static_cast<double>(key(place, c));
@@ -44,6 +64,7 @@ class PlacedPositions {
   std::ptrdiff_t stride_;
   bool records_;
   bool columns_;
+  bool apart_;
 };
 
 // f32 or f64 through a 32-bit index.
@@ -54,6 +75,7 @@ class IndexedPositions {
 
   explicit IndexedPositions(const PkdTree& tree) : base_{}, stride_(tree.position.stride), index_(tree.index32) {
     for (int c = 0; c < 3; ++c) base_[c] = tree.position.base[c];
+    apart_ = are_apart(base_);
   }
   T key(std::uint64_t place, int axis) const {
     return load<T>(base_[axis] + static_cast<std::ptrdiff_t>(index_[place]) * stride_);
@@ -61,9 +83,17 @@ class IndexedPositions {
   // Reading a centre takes two reads, one after the other: prefetch() asks for the first, prefetch_behind() for the
   // second.
   static constexpr bool is_indirect = true;
-  void prefetch(std::uint64_t place) const { __builtin_prefetch(index_ + place); }
+  static constexpr bool may_be_packed = false;
+  void prefetch(std::uint64_t place) const { prefetch_line(index_ + place); }
+  void prefetch_run(std::uint64_t begin, std::uint64_t end) const {
+    if (begin < end) prefetch_bytes(index_ + begin, (end - begin) * sizeof *index_);
+  }
   void prefetch_behind(std::uint64_t place) const {
-    __builtin_prefetch(base_[0] + static_cast<std::ptrdiff_t>(index_[place]) * stride_);
+    const std::ptrdiff_t offset = static_cast<std::ptrdiff_t>(index_[place]) * stride_;
+    prefetch_line(base_[0] + offset);
+    if (!apart_) return;
+    prefetch_line(base_[1] + offset);
+    prefetch_line(base_[2] + offset);
   }
   void centre(std::uint64_t place, double out[3]) const {
     const std::ptrdiff_t offset = static_cast<std::ptrdiff_t>(index_[place]) * stride_;
@@ -77,6 +107,7 @@ class IndexedPositions {
  private:
   const std::byte* base_[3];
   std::ptrdiff_t stride_;
+  bool apart_;
   const std::uint32_t* index_;
 };
 
@@ -90,7 +121,15 @@ class GeneralPositions {
     return tree_.position.value(tree_.position_of_place(place), static_cast<std::uint32_t>(axis));
   }
   static constexpr bool is_indirect = false;
-  void prefetch(std::uint64_t) const {}
+  static constexpr bool may_be_packed = false;
+  void prefetch(std::uint64_t place) const {
+    if (tree_.position_by_place && !tree_.position.rows) prefetch_line(tree_.position.address(place, 0));
+  }
+  void prefetch_run(std::uint64_t begin, std::uint64_t end) const {
+    if (begin < end && tree_.position_by_place && !tree_.position.rows)
+      prefetch_items(tree_.position.address(begin, 0), end - begin, tree_.position.stride,
+                     size_of(tree_.position.type));
+  }
   void centre(std::uint64_t place, double out[3]) const { tree_.centre(place, out); }
   void centre_f32(std::uint64_t place, float out[3]) const {
     double centre[3];

@@ -162,8 +162,7 @@ class StreamPackets {
     packet_count_ = 0;
     for (std::size_t first = 0; first < count; first += size) {
       // The rays of the packet after the next.
-      const auto* const ahead = reinterpret_cast<const std::byte*>(rays + std::min(first + 2 * size, count));
-      for (std::size_t byte = 0; byte < size * sizeof(Ray); byte += 64) __builtin_prefetch(ahead + byte);
+      prefetch_bytes(rays + std::min(first + 2 * size, count), size * sizeof(Ray));
       RayPacket& packet = packets_[packet_count_];
       if (!EnterPacket(packet, first, std::min(size, count - first))) continue;
       std::uint32_t signs[3];
@@ -211,7 +210,7 @@ class StreamPackets {
 
   HWY_INLINE void Prefetch(std::uint64_t begin, std::uint64_t end) const {
     if (HWY_UNLIKELY(!tree_.selected.all())) return PrefetchDrawn(tree_, positions_, begin, end);
-    PrefetchRun(positions_, begin, end);
+    positions_.prefetch_run(begin, end);
   }
   HWY_INLINE void PrefetchBehind(std::uint64_t begin, std::uint64_t end) const {
     if (HWY_UNLIKELY(!tree_.selected.all())) return PrefetchDrawnBehind(tree_, positions_, begin, end);
@@ -340,7 +339,7 @@ class StreamPackets {
     const std::size_t lanes = hn::Lanes(d);
     const V r2 = hn::Set(d, radius * radius * (1.0f + 1e-6f));
     const float inner = std::max(radius - shrink_, 0.0f);
-    const V inner2 = hn::Set(d, inner * inner * (1.0f - 1e-6f));
+    const V inner2 = hn::Set(d, inner * inner * (1.0f - 2e-6f));
     const V cx = hn::Set(d, centre[0]);
     const V cy = hn::Set(d, centre[1]);
     const V cz = hn::Set(d, centre[2]);

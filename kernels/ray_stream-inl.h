@@ -48,7 +48,7 @@ class StreamRays {
 
   HWY_INLINE void Prefetch(std::uint64_t begin, std::uint64_t end) const {
     if (HWY_UNLIKELY(!tree_.selected.all())) return PrefetchDrawn(tree_, positions_, begin, end);
-    PrefetchRun(positions_, begin, end);
+    positions_.prefetch_run(begin, end);
   }
   HWY_INLINE void PrefetchBehind(std::uint64_t begin, std::uint64_t end) const {
     if (HWY_UNLIKELY(!tree_.selected.all())) return PrefetchDrawnBehind(tree_, positions_, begin, end);
@@ -100,13 +100,20 @@ class StreamRays {
     for (std::size_t i = 0; i < count; ++i) {
       WalkRay& ray = rays_[first + i];
       int octant = 0;
+      double o[3], d[3];
       for (int c = 0; c < 3; ++c) {
-        ray.origin[c] = entered.origin[c][i];
+        o[c] = static_cast<double>(entered.origin[c][i]);
+        d[c] = static_cast<double>(entered.direction[c][i]);
         ray.direction[c] = entered.direction[c][i];
         ray.inverse[c] = entered.inverse[c][i];
-        ray.start[c] = -ray.origin[c] * ray.inverse[c];
+        ray.start[c] = -entered.origin[c][i] * ray.inverse[c];
         octant |= ray.inverse[c] < 0.0f ? 1 << c : 0;
       }
+      for (int c = 0; c < 3; ++c) {
+        const int next = (c + 1) % 3, last = (c + 2) % 3;
+        ray.moment[c] = static_cast<float>(o[next] * d[last] - o[last] * d[next]);
+      }
+      ray.foot = static_cast<float>(o[0] * d[0] + o[1] * d[1] + o[2] * d[2]);
       ray.t_low = entered.t_low[i];
       ray.t_high = entered.t_high[i];
       octants[i] = entered.is_inside(i) ? static_cast<std::uint8_t>(octant) : no_octant;

@@ -43,7 +43,7 @@ class TreeletNodes {
   std::uint64_t End(const Place& place) const { return std::min(place.run.begin + place.run.span, places_); }
 
   HWY_INLINE void Prefetch(const Place& place, unsigned level) const {
-    __builtin_prefetch(treelets_.nodes + treelets_.level_begin[level] + place.node);
+    prefetch_line(treelets_.nodes + treelets_.level_begin[level] + place.node);
   }
   HWY_INLINE void PrefetchBehind(const Place&, unsigned) const {}
 

@@ -21,6 +21,7 @@
 #include "kernels/pkd_exchange.h"
 #include "kernels/pkd_partition.h"
 #include "kernels/pkd_positions.h"
+#include "kernels/prefetch.h"
 
 namespace insitu {
 
@@ -112,8 +113,7 @@ class PackedStore {
   static constexpr bool is_packed() { return true; }
   const Key* records(std::uint64_t begin) const { return records_[begin].x; }
   void prefetch(std::uint64_t begin, std::uint64_t count) const {
-    const auto* const bytes = reinterpret_cast<const char*>(records_) + begin * sizeof(PkdRecord<K>);
-    for (std::uint64_t at = 0; at < count * sizeof(PkdRecord<K>); at += 64) __builtin_prefetch(bytes + at);
+    if (count != 0) kernels::prefetch_bytes(records_ + begin, count * sizeof(PkdRecord<K>));
   }
   Key key(std::uint64_t place, int axis) const { return records_[place].x[axis]; }
   std::size_t list(std::uint64_t begin, std::size_t count, int axis, kernels::Relation relation, Key pivot,
@@ -196,9 +196,7 @@ class ColumnsStore {
     if constexpr (std::is_same_v<Positions, kernels::PlacedPositions<Key>>) return positions_.scalars(begin, 0);
     return nullptr;
   }
-  void prefetch(std::uint64_t begin, std::uint64_t count) const {
-    for (std::uint64_t i = 0; i < count; ++i) positions_.prefetch(begin + i);
-  }
+  void prefetch(std::uint64_t begin, std::uint64_t count) const { positions_.prefetch_run(begin, begin + count); }
   Key key(std::uint64_t place, int axis) const { return positions_.key(place, axis); }
   std::size_t list(std::uint64_t begin, std::size_t count, int axis, kernels::Relation relation, Key pivot,
                    Place* places) const {

@@ -1,6 +1,10 @@
 // What the kernels take for granted of the compiler. Built with the flags of libinsitu/cmake/policy.cmake.
 #include <gtest/gtest.h>
 
+#include <cstring>
+
+#include "kernels/prefetch.h"
+
 namespace insitu::testing {
 namespace {
 
@@ -35,6 +39,22 @@ TEST(Compiler, RoundsToFloatWhenTold) {
     }
   }
 }
+
+[[gnu::noinline]] void ask_for(const void* memory, std::size_t bytes) { kernels::prefetch_bytes(memory, bytes); }
+[[gnu::noinline]] void ask_through_call(const void* memory) { ask_for(memory, 640); }
+
+#if defined(__x86_64__) && defined(__OPTIMIZE__)
+// To GCC 12 a function that does nothing but prefetch has no effect: where a call of it was dropped, nothing but the
+// return is left of the caller.
+TEST(Compiler, KeepsCallsThatOnlyPrefetch) {
+  constexpr unsigned char endbr64[] = {0xf3, 0x0f, 0x1e, 0xfa};
+  constexpr unsigned char ret = 0xc3;
+  const auto* code = reinterpret_cast<const unsigned char*>(&ask_through_call);
+  if (std::memcmp(code, endbr64, sizeof endbr64) == 0) code += sizeof endbr64;
+  EXPECT_NE(*code, ret);
+  ask_through_call(&code);
+}
+#endif
 
 }  // namespace
 }  // namespace insitu::testing
