@@ -34,7 +34,7 @@ class GuardedArray {
     if (shape == Shape::columns || shape == Shape::strided_columns) {
       const std::size_t stride = shape == Shape::columns ? size : 3 * size;
       insitu_array array = insitu_array_records(type, components, nullptr, count, static_cast<std::int64_t>(stride));
-      for (std::uint32_t c = 0; c < components; ++c)
+      for (std::uint32_t c = 0; c < std::min(components, 4u); ++c)
         array.component[c] = memory_[c]->flush(count == 0 ? 0 : (count - 1) * stride + size, at_end);
       return array;
     }

@@ -15,7 +15,7 @@ class RealFiles : public ::testing::Test {
  protected:
   void SetUp() override {
     const char* const folder = std::getenv("INSITU_DATA");
-    folder_ = folder ? folder : std::string(INSITU_SOURCE_DIR) + "/../shared/data";
+    folder_ = folder ? folder : INSITU_SOURCE_DIR "/../shared/data";
     if (!std::filesystem::is_directory(folder_)) GTEST_SKIP() << "no data in " << folder_ << " (see INSITU_DATA)";
   }
 
