@@ -12,10 +12,11 @@
 // run of memory.)
 #pragma once
 
+#include "kernels/array_view.h"
+#include "kernels/radius_view.h"
 #include "kernels/ray.h"
 #include "kernels/selected_copies.h"
 #include "kernels/selected_places.h"
-#include "kernels/views.h"
 
 namespace insitu::kernels {
 

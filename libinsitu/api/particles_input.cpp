@@ -98,6 +98,40 @@ void read_attributes(const insitu_particles_desc& desc, Reader& reader, Particle
     arrays.payload.push_back(reader.view(desc.payload[i], use_payload, "payload number " + std::to_string(i)));
 }
 
+const kernels::ArrayView* find_attribute(const ParticleArrays& arrays, const std::string& name) {
+  for (const NamedView& attribute : arrays.attributes)
+    if (attribute.name == name) return &attribute.view;
+  return name == "type" && arrays.type ? &*arrays.type : nullptr;
+}
+
+// After the attributes.
+void read_radius_map(const insitu_particles_desc& desc, const Reader& reader, ParticleArrays& arrays) {
+  constexpr std::uint64_t most_entries = 65536;
+  if (desc.radius_attribute == nullptr) {
+    if (desc.radius_map != nullptr || desc.radius_map_count != 0) reader.refuse("radius_map needs radius_attribute");
+    return;
+  }
+  if (arrays.radius || !arrays.type_radius.empty())
+    reader.refuse("radius_attribute is not for sets with a radius array or type_radius");
+  const std::string name = desc.radius_attribute;
+  const kernels::ArrayView* const values = find_attribute(arrays, name);
+  if (values == nullptr) reader.refuse("radius_attribute: there is no attribute '" + name + "'");
+  if (desc.radius_component > values->components)
+    reader.refuse("radius_component is " + std::to_string(desc.radius_component) + ", '" + name + "' has " +
+                  std::to_string(values->components) + " components");
+  if (desc.radius_map == nullptr || desc.radius_map_count < 2 || desc.radius_map_count > most_entries)
+    reader.refuse("radius_map is NULL, or radius_map_count is not 2 to " + std::to_string(most_entries));
+  RadiusMap map{*values, desc.radius_component, {desc.radius_range[0], desc.radius_range[1]}, {}};
+  const double density = static_cast<double>(desc.radius_map_count - 1) / (map.range[1] - map.range[0]);
+  if (!(map.range[0] < map.range[1] && std::isfinite(density) && density > 0.0))
+    reader.refuse("radius_range does not ascend, or is not finite");
+  map.radii.assign(desc.radius_map, desc.radius_map + desc.radius_map_count);
+  for (const double radius : map.radii)
+    if (!(radius >= 0.0 && std::isfinite(radius)))
+      reader.refuse("radius_map has an entry that is negative or not finite");
+  arrays.radius_map = std::move(map);
+}
+
 }  // namespace
 
 ParticleArrays read_particle_arrays(const insitu_particles_desc& desc, const std::string& set_name,
@@ -109,6 +143,7 @@ ParticleArrays read_particle_arrays(const insitu_particles_desc& desc, const std
   read_lattice(desc, reader, arrays);
   read_radii(desc, reader, arrays);
   read_attributes(desc, reader, arrays);
+  read_radius_map(desc, reader, arrays);
   return arrays;
 }
 

@@ -6,7 +6,7 @@
 
 #include "geometry/pkd/pkd_store.h"
 #include "insitu/insitu.h"
-#include "kernels/views.h"
+#include "kernels/array_view.h"
 
 namespace insitu {
 

@@ -122,7 +122,7 @@ Colors::Colors(const Style& style, const Particles& particles, const Colormap& m
 
 Rgba Colors::of(std::uint64_t item) const {
   if (values_ == nullptr) return uniform_;
-  const double value = styled_value(*values_, item, component_);
+  const double value = kernels::attribute_value(*values_, item, component_);
   if (map_->is_bad(value)) return Colormap::bad_value;  // missing data stand out
   Rgba color = of_value(value);
   color.a *= opacity_;

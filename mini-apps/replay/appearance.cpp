@@ -78,13 +78,29 @@ ColorChoice choose_color(const Frame& frame, const Options& options) {
                    frame.attribute_names() + ", or uniform, or a colour such as #4080c0");
 }
 
+namespace {
+
+RadiusChoice mapped_radius(const Frame& frame, const std::string& name) {
+  RadiusChoice choice;
+  const Attribute* const attribute = find_component(frame, name, choice.component);
+  if (!attribute) {
+    throw UsageError("--radius " + name + ": there is no such attribute for --radius-map, expected one of " +
+                     frame.attribute_names());
+  }
+  choice.mapped = attribute->name;
+  return choice;
+}
+
+}  // namespace
+
 RadiusChoice choose_radius(const Frame& frame, const Options& options) {
   if (frame.count() == 0) return {};
   const std::string& wish = options.radius;
+  if (options.radius_map) return mapped_radius(frame, wish);
   const Attribute* const element = frame.find("element");
   if (wish.empty()) {
     if (const Attribute* radius = frame.find("radius")) return radii_of(*radius);
-    return element ? vdw_radii(*element) : RadiusChoice{{}, frame.radius_for_all};
+    return element ? vdw_radii(*element) : RadiusChoice{{}, frame.radius_for_all, {}, 0};
   }
   RadiusChoice choice;
   if (wish == "auto") return choice;

@@ -20,6 +20,8 @@ struct ColorChoice {
 struct RadiusChoice {
   std::vector<float> per_particle;  // empty: one for all
   double for_all = 0.0;             // 0: left to the library
+  std::string mapped;               // the attribute that goes through --radius-map; empty: none does
+  std::uint32_t component = 0;      // of it
 };
 
 // "velocity", "velocity.x", "stress.4": the attribute and the component, counted from 1, or 0 where the text names

@@ -166,41 +166,77 @@ double parse_bonds(const std::string& text) {
   return value;
 }
 
-std::vector<double> parse_opacity_map(const std::string& text) {
-  const auto wrong = [&text](const std::string& why) {
-    return UsageError("--opacity-map " + text + ": " + why +
-                      ", expected PLACE:OPACITY,..., such as 0:0,0.3:0.05,1:1, all from 0 to 1");
+namespace {
+
+// A function of one variable: straight lines between points, the first and the last value beyond them.
+struct MapPoint {
+  double at;
+  double value;
+};
+
+// "A:V,A:V,..." in ascending order of A, where is_good(point). `expected` says so to the user.
+template <class IsGood>
+std::vector<MapPoint> parse_points(const std::string& option, const std::string& text, const std::string& expected,
+                                   const IsGood& is_good) {
+  const auto wrong = [&](const std::string& why) {
+    return UsageError(option + " " + text + ": " + why + ", expected " + expected);
   };
-  struct Point {
-    double place;
-    double opacity;
-  };
-  std::vector<Point> points;
+  std::vector<MapPoint> points;
   for (const std::string& part : split_at(text, ',')) {
     const std::vector<std::string> numbers = split_at(part, ':');
-    double value[2] = {};
-    bool good = numbers.size() == 2;
-    for (std::size_t i = 0; good && i < 2; ++i)
-      good = parse_number(numbers[i], value[i]) && value[i] >= 0.0 && value[i] <= 1.0;
-    if (!good) throw wrong(quoted(part) + " is no point");
-    if (!points.empty() && value[0] < points.back().place) throw wrong("places do not ascend");
-    points.push_back({value[0], value[1]});
+    MapPoint point{};
+    const bool good =
+        numbers.size() == 2 && parse_number(numbers[0], point.at) && parse_number(numbers[1], point.value);
+    if (!good || !is_good(point)) throw wrong(quoted(part) + " is no point");
+    if (!points.empty() && point.at < points.back().at) throw wrong("places do not ascend");
+    points.push_back(point);
   }
-  constexpr std::size_t steps = 1024;
-  std::vector<double> opacities;
-  std::size_t next = 0;  // the first point behind the place
+  return points;
+}
+
+double value_at(const std::vector<MapPoint>& points, double at) {
+  const auto next = std::upper_bound(points.begin(), points.end(), at,
+                                     [](double place, const MapPoint& point) { return place < point.at; });
+  if (next == points.begin()) return points.front().value;
+  if (next == points.end()) return points.back().value;
+  const MapPoint& a = *(next - 1);
+  const MapPoint& b = *next;
+  return a.value + (b.value - a.value) * (at - a.at) / (b.at - a.at);
+}
+
+// Its values at steps + 1 places from `first` to `last`.
+std::vector<double> evenly_spaced(const std::vector<MapPoint>& points, double first, double last, std::size_t steps) {
+  std::vector<double> values;
   for (std::size_t i = 0; i <= steps; ++i) {
-    const double place = static_cast<double>(i) / steps;
-    while (next < points.size() && points[next].place <= place) ++next;
-    if (next == 0 || next == points.size()) {
-      opacities.push_back(next == 0 ? points.front().opacity : points.back().opacity);
-      continue;
-    }
-    const Point& a = points[next - 1];
-    const Point& b = points[next];
-    opacities.push_back(a.opacity + (b.opacity - a.opacity) * (place - a.place) / (b.place - a.place));
+    const double share = static_cast<double>(i) / static_cast<double>(steps);
+    values.push_back(value_at(points, i == steps ? last : first + (last - first) * share));
   }
-  return opacities;
+  return values;
+}
+
+constexpr std::size_t map_steps = 1024;
+
+}  // namespace
+
+std::vector<double> parse_opacity_map(const std::string& text) {
+  const auto is_good = [](const MapPoint& point) {
+    return point.at >= 0.0 && point.at <= 1.0 && point.value >= 0.0 && point.value <= 1.0;
+  };
+  const std::vector<MapPoint> points =
+      parse_points("--opacity-map", text, "PLACE:OPACITY,..., such as 0:0,0.3:0.05,1:1, all from 0 to 1", is_good);
+  return evenly_spaced(points, 0.0, 1.0, map_steps);
+}
+
+RadiusMap parse_radius_map(const std::string& text) {
+  const std::string expected = "VALUE:RADIUS,..., such as 0:0.1,2:0.5, with two values or more";
+  const auto is_good = [](const MapPoint& point) {
+    return std::isfinite(point.at) && point.value >= 0.0 && std::isfinite(point.value);
+  };
+  const std::vector<MapPoint> points = parse_points("--radius-map", text, expected, is_good);
+  RadiusMap map{{points.front().at, points.back().at}, {}};
+  if (!(map.range[0] < map.range[1])) throw UsageError("--radius-map " + text + ": expected " + expected);
+  map.radii = evenly_spaced(points, map.range[0], map.range[1], points.size() == 2 ? 1 : map_steps);
+  return map;
 }
 
 std::vector<int> parse_elements(const std::string& text) {

@@ -26,6 +26,8 @@ std::array<std::uint32_t, 3> parse_replicate(const std::string& text);
 double parse_bonds(const std::string& text);
 // "0:0,0.3:0.05,1:1": opacities at places of the colour map, as 1025 opacities evenly spaced over it.
 std::vector<double> parse_opacity_map(const std::string& text);
+// "0:0.1,2:0.5": radii at values of an attribute.
+RadiusMap parse_radius_map(const std::string& text);
 // "O,H,Na" as atomic numbers.
 std::vector<int> parse_elements(const std::string& text);
 

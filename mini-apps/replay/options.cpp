@@ -28,6 +28,7 @@ struct Texts {
   std::string bonds;
   std::string replicate;
   std::string opacity_map;
+  std::string radius_map;
   std::vector<double> range;
   std::vector<std::string> filters;
   bool no_hetatm = false;
@@ -132,6 +133,11 @@ void add_looks(CLI::App& app, Options& options, Texts& texts) {
                  wrapped("A length, vdw (by element), auto (by the spacing), or the attribute to take; by default the "
                          "file's radius, else vdw, else by the spacing (docs/replay.md)"))
       ->type_name("R")
+      ->group(group);
+  app.add_option("--radius-map", texts.radius_map,
+                 wrapped("Radii by the value of the attribute that --radius names (v.x: a component), as points with "
+                         "straight lines between them, such as 0:0.1,2:0.5"))
+      ->type_name("V:R,...")
       ->group(group);
   app.add_option("--radius-scale", options.radius_scale, wrapped("Factor on every radius"))
       ->type_name("F")
@@ -282,6 +288,10 @@ void convert(const Texts& texts, Options& options) {
   if (!texts.replicate.empty()) options.replicate = parse_replicate(texts.replicate);
   if (!(options.opacity > 0.0)) throw UsageError("--opacity: expected a number above 0, at most 1");
   if (!texts.opacity_map.empty()) options.opacity_map = parse_opacity_map(texts.opacity_map);
+  if (!texts.radius_map.empty()) options.radius_map = parse_radius_map(texts.radius_map);
+  if (options.radius_map && options.radius.empty()) {
+    throw UsageError("--radius-map: expected --radius with the attribute that it is for, such as --radius speed");
+  }
   options.order = order_names.at(texts.order);
   options.read.hetatm = !texts.no_hetatm;
   check_image_pattern(options.out);

@@ -40,6 +40,12 @@ struct StepSelection {
   bool is_behind(std::uint64_t step) const { return end && step >= *end; }
 };
 
+// Radii evenly spaced over the values from range[0] to range[1].
+struct RadiusMap {
+  std::array<double, 2> range;
+  std::vector<double> radii;
+};
+
 struct Options {
   std::vector<std::string> files;
   ReadOptions read;
@@ -54,6 +60,7 @@ struct Options {
   double opacity = 1.0;
   std::vector<double> opacity_map;  // evenly spaced over the colour map; empty: 1 everywhere
   std::string radius;
+  std::optional<RadiusMap> radius_map;  // of the attribute that `radius` names
   double radius_scale = 1.0;
   std::vector<FilterChoice> filters;     // all of them have to hold
   double treelet_share = 0.0;            // of the bytes of the positions

@@ -127,6 +127,14 @@ void Player::update(Frame& frame, Arrays& arrays) {
     arrays.radius_array = records(INSITU_F32, 1, arrays.radius.per_particle.data());
     desc.radius = &arrays.radius_array;
   }
+  if (!arrays.radius.mapped.empty()) {
+    const RadiusMap& map = *options_.radius_map;
+    desc.radius_attribute = arrays.radius.mapped.c_str();
+    desc.radius_component = arrays.radius.component;
+    desc.radius_map = map.radii.data();
+    desc.radius_map_count = map.radii.size();
+    std::copy(map.range.begin(), map.range.end(), desc.radius_range);
+  }
   arrays.values.reserve(frame.attributes.size());
   for (const Attribute& attribute : frame.attributes) {
     if (attribute.name == "type") {

@@ -59,7 +59,7 @@ static void check_structs(void) {
   OFFSET(insitu_attribute, name, 0);
   OFFSET(insitu_attribute, values, 8);
 
-  SIZE(insitu_particles_desc, 152);
+  SIZE(insitu_particles_desc, 200);
   OFFSET(insitu_particles_desc, struct_size, 0);
   OFFSET(insitu_particles_desc, order, 4);
   OFFSET(insitu_particles_desc, name, 8);
@@ -79,6 +79,12 @@ static void check_structs(void) {
   OFFSET(insitu_particles_desc, flags, 136);
   OFFSET(insitu_particles_desc, reserved, 140);
   OFFSET(insitu_particles_desc, treelet_share, 144);
+  OFFSET(insitu_particles_desc, radius_attribute, 152);
+  OFFSET(insitu_particles_desc, radius_map, 160);
+  OFFSET(insitu_particles_desc, radius_map_count, 168);
+  OFFSET(insitu_particles_desc, radius_range, 176);
+  OFFSET(insitu_particles_desc, radius_component, 192);
+  OFFSET(insitu_particles_desc, reserved_2, 196);
 
   SIZE(insitu_filter_term, 136);
   OFFSET(insitu_filter_term, struct_size, 0);

@@ -45,6 +45,15 @@ struct Input {
   Input(const Input&) = delete;
   Input& operator=(const Input&) = delete;
 
+  // Radii by the value of an attribute, and in no other way.
+  void map_radii(const char* attribute_name) {
+    desc.radius = nullptr;
+    desc.radius_attribute = attribute_name;
+    desc.radius_map = type_radius;
+    desc.radius_map_count = 3;
+    desc.radius_range[1] = 1.0;
+  }
+
   double xyz[3 * items];
   float radii[items];
   std::int32_t types[items];
@@ -256,6 +265,63 @@ const Case cases[] = {
      },
      INSITU_ERROR_INVALID_ARGUMENT,
      {"type_radius", "type array"}},
+    {"a map of radii without an attribute",
+     [](Input& i) { i.desc.radius_map = i.type_radius; },
+     INSITU_ERROR_INVALID_ARGUMENT,
+     {"radius_map", "radius_attribute"}},
+    {"a map of radii beside an array of them",
+     [](Input& i) {
+       i.map_radii("heat");
+       i.desc.radius = &i.radius;
+     },
+     INSITU_ERROR_INVALID_ARGUMENT,
+     {"radius_attribute", "radius array"}},
+    {"a map of radii of an attribute that is not there",
+     [](Input& i) { i.map_radii("cold"); },
+     INSITU_ERROR_INVALID_ARGUMENT,
+     {"radius_attribute", "'cold'"}},
+    {"a map of radii of a component that is not there",
+     [](Input& i) {
+       i.map_radii("heat");
+       i.desc.radius_component = 2;
+     },
+     INSITU_ERROR_INVALID_ARGUMENT,
+     {"radius_component is 2", "1 components"}},
+    {"a map of radii with one entry",
+     [](Input& i) {
+       i.map_radii("heat");
+       i.desc.radius_map_count = 1;
+     },
+     INSITU_ERROR_INVALID_ARGUMENT,
+     {"radius_map_count"}},
+    {"a map of radii that is not there",
+     [](Input& i) {
+       i.map_radii("heat");
+       i.desc.radius_map = nullptr;
+     },
+     INSITU_ERROR_INVALID_ARGUMENT,
+     {"radius_map is NULL"}},
+    {"a map of radii over nothing",
+     [](Input& i) {
+       i.map_radii("heat");
+       i.desc.radius_range[1] = i.desc.radius_range[0];
+     },
+     INSITU_ERROR_INVALID_ARGUMENT,
+     {"radius_range"}},
+    {"a map of radii over everything",
+     [](Input& i) {
+       i.map_radii("heat");
+       i.desc.radius_range[1] = std::numeric_limits<double>::infinity();
+     },
+     INSITU_ERROR_INVALID_ARGUMENT,
+     {"radius_range"}},
+    {"a map with a negative radius",
+     [](Input& i) {
+       i.map_radii("heat");
+       i.type_radius[1] = -0.1;
+     },
+     INSITU_ERROR_INVALID_ARGUMENT,
+     {"radius_map", "negative"}},
     {"a scale for floating point positions",
      [](Input& i) { i.desc.position_scale = 2.0; },
      INSITU_ERROR_INVALID_ARGUMENT,

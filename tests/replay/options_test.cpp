@@ -65,6 +65,24 @@ TEST(Options, OpacityMapsAreStraightLinesBetweenPoints) {
   EXPECT_THAT(usage_error([] { parse_opacity_map("0.5:0,0.4:1"); }), HasSubstr("do not ascend"));
 }
 
+TEST(Options, RadiusMapsAreEvenlySpacedOverTheirValues) {
+  const RadiusMap two = parse_radius_map("-1:0.5,3:2.5");
+  EXPECT_THAT(two.range, testing::ElementsAre(-1.0, 3.0));
+  EXPECT_THAT(two.radii, testing::ElementsAre(0.5, 2.5));
+  const RadiusMap three = parse_radius_map("0:0,1:2,4:8");
+  ASSERT_EQ(three.radii.size(), 1025u);
+  EXPECT_EQ(three.radii[0], 0.0);
+  EXPECT_DOUBLE_EQ(three.radii[128], 1.0);
+  EXPECT_DOUBLE_EQ(three.radii[256], 2.0);
+  EXPECT_DOUBLE_EQ(three.radii[640], 5.0);
+  EXPECT_EQ(three.radii[1024], 8.0);
+  for (const char* text : {"", "0.5", "0:-1", "inf:0", "0:nan", "0:0:0", "0:0,"})
+    EXPECT_THAT(usage_error([text] { parse_radius_map(text); }), HasSubstr("is no point")) << text;
+  EXPECT_THAT(usage_error([] { parse_radius_map("5:0,4:1"); }), HasSubstr("do not ascend"));
+  EXPECT_THAT(usage_error([] { parse_radius_map("5:1"); }), HasSubstr("two values or more"));
+  EXPECT_THAT(usage_error([] { parse_radius_map("5:1,5:2"); }), HasSubstr("two values or more"));
+}
+
 TEST(Options, BondsAndReplicas) {
   EXPECT_EQ(parse_bonds("auto"), 0.0);
   EXPECT_EQ(parse_bonds("1.6"), 1.6);

@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "geometry/styled_value.h"
+#include "kernels/array_view.h"
+#include "kernels/attribute_value.h"
 #include "kernels/pkd_tree.h"
-#include "kernels/views.h"
 
 namespace insitu {
 
@@ -104,7 +104,8 @@ std::uint64_t word_of_lengths(const kernels::ArrayView& view, const Column& colu
   const decltype(column(0)) part[4] = {column(0), column(1), column(view.components > 2 ? 2 : 0),
                                        column(view.components > 3 ? 3 : 0)};
   return word_of(block, [&](std::uint64_t item) {
-    return holds(vector_length(view.components, [&](std::uint32_t c) { return static_cast<double>(part[c](item)); }));
+    return holds(
+        kernels::vector_length(view.components, [&](std::uint32_t c) { return static_cast<double>(part[c](item)); }));
   });
 }
 

@@ -5,7 +5,7 @@
 #include <type_traits>
 
 #include "geometry/filter/whole_number.h"
-#include "geometry/styled_value.h"
+#include "kernels/attribute_value.h"
 
 namespace insitu {
 namespace {
@@ -53,7 +53,7 @@ std::uint64_t RangeTerm::word(const FilterBlock& block) const {
 
 bool RangeTerm::accepts(std::uint64_t item) const {
   if (is_float(values.type) || (component == 0 && values.components > 1)) {
-    const double v = styled_value(values, item, component);
+    const double v = kernels::attribute_value(values, item, component);
     return v >= low && v <= high;
   }
   const WholeNumber v = whole_number(values, item, component > 0 ? component - 1 : 0);

@@ -22,7 +22,7 @@ std::uint64_t SetTerm::word(const FilterBlock& block) const {
 
 bool SetTerm::accepts(std::uint64_t item) const {
   if (is_float(values.type) || (component == 0 && values.components > 1))
-    return members->contains(styled_value(values, item, component));
+    return members->contains(kernels::attribute_value(values, item, component));
   return members->contains(whole_number(values, item, component > 0 ? component - 1 : 0));
 }
 

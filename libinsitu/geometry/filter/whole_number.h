@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "kernels/views.h"
+#include "kernels/array_view.h"
 
 namespace insitu {
 

@@ -9,7 +9,7 @@
 
 #include "core/float_environment.h"
 #include "geometry/particles/particles.h"
-#include "geometry/styled_value.h"
+#include "kernels/attribute_value.h"
 
 namespace insitu {
 
@@ -20,7 +20,7 @@ ValueRange value_range(const kernels::ArrayView& view, std::uint32_t component) 
       [&](const auto& range, ValueRange result) {
         const FloatEnvironment guard;
         for (std::uint64_t item = range.begin(); item < range.end(); ++item) {
-          const double value = styled_value(view, item, component);
+          const double value = kernels::attribute_value(view, item, component);
           if (!std::isfinite(value)) continue;
           result.low = std::min(result.low, value);
           result.high = std::max(result.high, value);

@@ -76,6 +76,15 @@ RadiusView radius_view(const ParticleArrays& arrays) {
     view.array = *arrays.type;
     view.table = arrays.type_radius.data();
     view.table_size = arrays.type_radius.size();
+  } else if (arrays.radius_map) {
+    const RadiusMap& map = *arrays.radius_map;
+    view.kind = RadiusView::Kind::by_value;
+    view.array = map.values;
+    view.component = map.component;
+    view.table = map.radii.data();
+    view.table_size = map.radii.size();
+    view.table_begin = map.range[0];
+    view.table_density = static_cast<double>(map.radii.size() - 1) / (map.range[1] - map.range[0]);
   } else {
     view.uniform = arrays.radius_default * view.scale;
   }

@@ -27,6 +27,14 @@ struct NamedView {
   kernels::ArrayView view;
 };
 
+// Radii by the value of an attribute: evenly spaced from range[0] to range[1].
+struct RadiusMap {
+  kernels::ArrayView values;
+  std::uint32_t component = 0;
+  double range[2];
+  std::vector<double> radii;
+};
+
 // Everything that an update brings; checked, and borrowed until release().
 struct ParticleArrays {
   kernels::ArrayView position;
@@ -35,6 +43,7 @@ struct ParticleArrays {
   std::optional<kernels::ArrayView> radius;
   std::optional<kernels::ArrayView> type;
   std::vector<double> type_radius;
+  std::optional<RadiusMap> radius_map;
   double radius_default = 0.0;  // 0: half the mean spacing
   double radius_scale = 1.0;
   double treelet_share = 0.0;  // most memory for treelets, as a part of the bytes of the positions; 0: none

@@ -6,8 +6,8 @@
 
 #include "geometry/cell.h"
 #include "geometry/filter/filter.h"
+#include "kernels/array_view.h"
 #include "kernels/pkd_tree.h"
-#include "kernels/views.h"
 
 namespace insitu {
 

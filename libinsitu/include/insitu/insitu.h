@@ -218,6 +218,15 @@ typedef struct insitu_particles_desc {
    * max_extra_bytes leaves no room; insitu_stats says what was made. Under a filter that leaves few particles of a run
    * the treelets are fewer, and the share also holds copies of their centres, 16 bytes each, if it can. */
   double treelet_share;
+  /* Radii by the value of an attribute, where there are neither `radius` nor `type_radius`: radius_map holds radii
+   * evenly spaced over the values from radius_range[0] to radius_range[1], linear in between, the first and the last
+   * beyond; copied. What is not a number is skipped. */
+  const char* radius_attribute; /* one of `attributes`, or "type"; NULL = no such map */
+  const double* radius_map;
+  uint64_t radius_map_count; /* 2 to 65536 */
+  double radius_range[2];    /* ascending */
+  uint32_t radius_component; /* 0 = the value, or the length of a vector; 1 to 4 = that component */
+  uint32_t reserved_2;       /* 0 */
 } insitu_particles_desc;
 
 /* Declares a set of particles; with arrays in `desc` (inside a step) it also updates it.

@@ -94,6 +94,44 @@ TEST(Particles, TypesOutsideOfTheTableAreSkipped) {
   EXPECT_FALSE(hits[3].found());
 }
 
+// Against the radii worked out here: at entries, between them, beyond both ends, and where there is none.
+TEST(Particles, RadiiFollowTheValuesOfAnAttribute) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<float> value = {-infinity, 0.0f, 1.0f, 1.5f, 2.0f, 2.25f, 3.0f, 9.0f, infinity, nan};
+  const std::vector<double> expected = {0.5, 0.5, 1.0, 1.5, 2.0,
+                                        1.5, 0.0, 0.0, 0.0, 0.0};  // as radii, before the scale
+  const std::vector<double> table = {0.5, 1.0, 2.0, 0.0};          // at 0, 1, 2, 3
+  for (const ParticleOrder order : {ParticleOrder::index, ParticleOrder::permute, ParticleOrder::copy}) {
+    for (const std::uint32_t component : {0u, 2u}) {
+      std::vector<double> x;
+      std::vector<float> values;  // the scalar, or the second component of a vector
+      for (std::size_t i = 0; i < value.size(); ++i) {
+        x.insert(x.end(), {10.0 * static_cast<double>(i), 0.0, 0.0});
+        if (component == 2) values.push_back(77.0f);
+        values.push_back(value[i]);
+      }
+      ParticleArrays arrays;
+      arrays.position = positions_of(x);
+      arrays.radius_scale = 2.0;
+      arrays.attributes.push_back({"heat", attribute_of(values, component == 2 ? 2 : 1)});
+      arrays.radius_map = RadiusMap{arrays.attributes.back().view, component, {0.0, 3.0}, table};
+      Particles particles("p", order, false);
+      Budget budget(0);
+      particles.bind(std::move(arrays));
+      particles.build(budget);
+      EXPECT_EQ(particles.drawn_count(), 6u);
+      for (std::size_t i = 0; i < value.size(); ++i) {
+        const kernels::Ray ray = ray_along_z(10.0 * static_cast<double>(i), 0.0, -10.0);
+        kernels::Hit hit;
+        particles.first_hits(&ray, &hit, 1);
+        ASSERT_EQ(hit.found(), expected[i] > 0.0) << value[i];
+        EXPECT_EQ(hit.t, hit.found() ? 10.0 - 2.0 * expected[i] : hit.t) << value[i];
+      }
+    }
+  }
+}
+
 // The same points as f64 and as integers with a scale and an origin: the same items, and distances to rounding.
 TEST(Particles, LatticesAgreeWithWorldCoordinates) {
   CounterRandom random(21);
@@ -235,14 +273,14 @@ TEST(Particles, WhoIsShownDoesNotDependOnTheOrder) {
 TEST(StyledValue, IsAComponentOrALength) {
   const std::vector<double> v = {3, 4, 0, 1e300, 1e300, 0, 1e-300, 0, 0, 0, 0, 0};
   const kernels::ArrayView view = attribute_of(v, 3);
-  EXPECT_EQ(styled_value(view, 0, 1), 3.0);
-  EXPECT_EQ(styled_value(view, 0, 2), 4.0);
-  EXPECT_DOUBLE_EQ(styled_value(view, 0, 0), 5.0);
-  EXPECT_DOUBLE_EQ(styled_value(view, 1, 0), std::sqrt(2.0) * 1e300);  // its square overflows
-  EXPECT_DOUBLE_EQ(styled_value(view, 2, 0), 1e-300);                  // its square vanishes
-  EXPECT_EQ(styled_value(view, 3, 0), 0.0);
+  EXPECT_EQ(kernels::attribute_value(view, 0, 1), 3.0);
+  EXPECT_EQ(kernels::attribute_value(view, 0, 2), 4.0);
+  EXPECT_DOUBLE_EQ(kernels::attribute_value(view, 0, 0), 5.0);
+  EXPECT_DOUBLE_EQ(kernels::attribute_value(view, 1, 0), std::sqrt(2.0) * 1e300);  // its square overflows
+  EXPECT_DOUBLE_EQ(kernels::attribute_value(view, 2, 0), 1e-300);                  // its square vanishes
+  EXPECT_EQ(kernels::attribute_value(view, 3, 0), 0.0);
   const std::vector<float> scalar = {-7.0f};
-  EXPECT_EQ(styled_value(attribute_of(scalar), 0, 0), -7.0);
+  EXPECT_EQ(kernels::attribute_value(attribute_of(scalar), 0, 0), -7.0);
 }
 
 // A length with a NaN in it is none, wherever it stands.
@@ -251,11 +289,12 @@ TEST(StyledValue, NaNStaysNaN) {
     for (const double other : {0.0, 1.0}) {
       std::vector<double> v(3, other);
       v[at] = nan;
-      EXPECT_TRUE(std::isnan(styled_value(attribute_of(v, 3), 0, 0))) << "NaN at " << at << ", others " << other;
+      EXPECT_TRUE(std::isnan(kernels::attribute_value(attribute_of(v, 3), 0, 0)))
+          << "NaN at " << at << ", others " << other;
     }
     std::vector<double> v(3, 1.0);
     v[at] = -infinity;
-    EXPECT_EQ(styled_value(attribute_of(v, 3), 0, 0), infinity);
+    EXPECT_EQ(kernels::attribute_value(attribute_of(v, 3), 0, 0), infinity);
   }
 }
 
