@@ -292,13 +292,14 @@ class ParticleTests {
     radius2_ = static_cast<float>(wide * wide * (1.0 + 8.0 * f32_unit));
   }
 
-  // Calls confirm(ray, place, is_certain) for the pairs that may hit; where it returns true the ray needs no more. What
+  // Calls confirm(ray, place, is_certain) for the pairs that may hit; where it returns true the ray needs no more, and
+  // keep_open(list, size) leaves such rays out of the list. What
   // is certain is hit in truth, and from outside, behind the start and before the end of the ray: the sphere without
   // its margin is hit, the one with it begins behind t_low and two margins (which is the start of the ray and one), and
   // the hit lies before the middle, b, which is nearer than t_high less two margins.
-  template <class Particles, class Rays, class ConfirmHit>
-  HWY_INLINE void VisitTogether(const Particles& particles, const Rays* rays, const std::uint32_t* list,
-                                std::size_t list_size, const ConfirmHit& confirm) const {
+  template <class Particles, class Rays, class ConfirmHit, class KeepOpen>
+  HWY_INLINE void VisitTogether(const Particles& particles, const Rays* rays, std::uint32_t* list,
+                                std::size_t list_size, const ConfirmHit& confirm, const KeepOpen& keep_open) const {
     const hn::CappedTag<float, most_lanes> d;
     using V = hn::Vec<decltype(d)>;
     const std::size_t lanes = hn::Lanes(d);
@@ -317,6 +318,7 @@ class ParticleTests {
         r2 = hn::Mul(hn::Mul(wide, wide), hn::Set(d, above_));
         inner2 = hn::Mul(hn::Mul(inner, inner), hn::Set(d, below_));
       }
+      bool any_done = false;
       for (std::size_t i = 0; i < list_size; ++i) {
         const auto& ray = rays[list[i]];
         // By the moment of the line (docs/math/particles.md): less to do than ApproachOf() for what is not close.
@@ -346,7 +348,9 @@ class ParticleTests {
           done = confirm(list[i], particles.place(first + hwy::Num0BitsBelowLS1Bit_Nonzero32(certain)), true);
         for (; possible != 0 && !done; possible &= possible - 1)
           done = confirm(list[i], particles.place(first + hwy::Num0BitsBelowLS1Bit_Nonzero32(possible)), false);
+        any_done |= done;
       }
+      if (any_done && first + lanes < particles.size()) list_size = keep_open(list, list_size);
     }
   }
 

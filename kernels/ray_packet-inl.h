@@ -208,6 +208,10 @@ class StreamPackets {
     return met_by_rays;
   }
 
+  // A packet is looked for in all of a node's children before any of its rays is done.
+  static constexpr std::size_t done() { return 0; }
+  static std::size_t KeepOpen(std::uint32_t*, std::size_t count) { return count; }
+
   HWY_INLINE void Prefetch(std::uint64_t begin, std::uint64_t end) const {
     if (HWY_UNLIKELY(!tree_.selected.all())) return PrefetchDrawn(tree_, positions_, begin, end);
     positions_.prefetch_run(begin, end);
@@ -217,11 +221,11 @@ class StreamPackets {
     PrefetchRunBehind(positions_, begin, end);
   }
 
-  HWY_INLINE void Visit(std::uint64_t begin, std::uint64_t end, const std::uint32_t* list, std::size_t count) {
+  HWY_INLINE void Visit(std::uint64_t begin, std::uint64_t end, std::uint32_t* list, std::size_t count) {
     if (HWY_UNLIKELY(!tree_.selected.all())) return VisitFiltered(begin, end, list, count);
     Visit(ParticleRun<Positions>(tree_, positions_, begin, end), list, count);
   }
-  HWY_INLINE void VisitPick(const ParticlePick& pick, const std::uint32_t* list, std::size_t count) {
+  HWY_INLINE void VisitPick(const ParticlePick& pick, std::uint32_t* list, std::size_t count) {
     Visit(pick, list, count);
   }
 
@@ -231,8 +235,7 @@ class StreamPackets {
   static constexpr std::uint64_t most_noted = std::uint64_t{1} << 32;
 
   // Not inlined: without a filter it is never called.
-  HWY_NOINLINE void VisitFiltered(std::uint64_t begin, std::uint64_t end, const std::uint32_t* list,
-                                  std::size_t count) {
+  HWY_NOINLINE void VisitFiltered(std::uint64_t begin, std::uint64_t end, std::uint32_t* list, std::size_t count) {
     if (tree_.copies.exist()) return Visit(CopiedRun(tree_, begin, end), list, count);
     const std::size_t lanes = hn::Lanes(hn::CappedTag<float, ParticleTests::most_lanes>());
     DrawnPlaces drawn(tree_, begin, end);
@@ -242,7 +245,7 @@ class StreamPackets {
   }
 
   template <class Particles>
-  HWY_INLINE void Visit(const Particles& particles, const std::uint32_t* list, std::size_t count) {
+  HWY_INLINE void Visit(const Particles& particles, std::uint32_t* list, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
       RayBeam& beam = beams_[list[i]];
       RayPacket& packet = packets_[beam.packet];

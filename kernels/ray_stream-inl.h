@@ -46,6 +46,17 @@ class StreamRays {
     return planes.Meet(rays_[ray]);
   }
 
+  std::size_t done() const { return done_; }
+  HWY_INLINE std::size_t KeepOpen(std::uint32_t* HWY_RESTRICT list, std::size_t count) const {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t number = list[i];
+      list[kept] = number;
+      kept += occluded_[number] == 0 ? 1 : 0;
+    }
+    return kept;
+  }
+
   HWY_INLINE void Prefetch(std::uint64_t begin, std::uint64_t end) const {
     if (HWY_UNLIKELY(!tree_.selected.all())) return PrefetchDrawn(tree_, positions_, begin, end);
     positions_.prefetch_run(begin, end);
@@ -55,18 +66,17 @@ class StreamRays {
     PrefetchRunBehind(positions_, begin, end);
   }
 
-  HWY_INLINE void Visit(std::uint64_t begin, std::uint64_t end, const std::uint32_t* list, std::size_t count) {
+  HWY_INLINE void Visit(std::uint64_t begin, std::uint64_t end, std::uint32_t* list, std::size_t count) {
     if (HWY_UNLIKELY(!tree_.selected.all())) return VisitFiltered(begin, end, list, count);
     Visit(ParticleRun<Positions>(tree_, positions_, begin, end), list, count);
   }
-  HWY_INLINE void VisitPick(const ParticlePick& pick, const std::uint32_t* list, std::size_t count) {
+  HWY_INLINE void VisitPick(const ParticlePick& pick, std::uint32_t* list, std::size_t count) {
     Visit(pick, list, count);
   }
 
  private:
   // Not inlined: without a filter it is never called.
-  HWY_NOINLINE void VisitFiltered(std::uint64_t begin, std::uint64_t end, const std::uint32_t* list,
-                                  std::size_t count) {
+  HWY_NOINLINE void VisitFiltered(std::uint64_t begin, std::uint64_t end, std::uint32_t* list, std::size_t count) {
     if (tree_.copies.exist()) return Visit(CopiedRun(tree_, begin, end), list, count);
     const std::size_t lanes = hn::Lanes(hn::CappedTag<float, ParticleTests::most_lanes>());
     DrawnPlaces drawn(tree_, begin, end);
@@ -76,10 +86,12 @@ class StreamRays {
   }
 
   template <class Particles>
-  HWY_INLINE void Visit(const Particles& particles, const std::uint32_t* list, std::size_t count) {
-    tests_.VisitTogether(particles, rays_.get(), list, count,
-                         [&](std::uint32_t ray, std::uint64_t place, bool is_certain)
-                             HWY_ATTR { return is_certain ? Occlude(ray, place) : Confirm(ray, place); });
+  HWY_INLINE void Visit(const Particles& particles, std::uint32_t* list, std::size_t count) {
+    tests_.VisitTogether(
+        particles, rays_.get(), list, count,
+        [&](std::uint32_t ray, std::uint64_t place, bool is_certain)
+            HWY_ATTR { return is_certain ? Occlude(ray, place) : Confirm(ray, place); },
+        [&](std::uint32_t* left, std::size_t size) HWY_ATTR { return KeepOpen(left, size); });
   }
 
   void EnterSome(std::size_t first, std::size_t count, std::uint8_t* octants) {
@@ -123,9 +135,7 @@ class StreamRays {
   // A hit that needs no confirmation. True: the ray is occluded.
   HWY_INLINE bool Occlude(std::uint32_t number, std::uint64_t place) {
     if (tree_.item(place) == source_[number].exclude) return false;
-    occluded_[number] = 1;
-    rays_[number].t_high = -std::numeric_limits<float>::infinity();
-    return true;
+    return Finish(number);
   }
 
   // True: the ray is occluded.
@@ -134,8 +144,13 @@ class StreamRays {
     if (ray.t_high == -std::numeric_limits<float>::infinity()) return true;
     AnyHitVisitor visitor(source_[number]);
     if (!visitor.visit(tree_, positions_, place, source_[number])) return false;
+    return Finish(number);
+  }
+
+  HWY_INLINE bool Finish(std::uint32_t number) {
     occluded_[number] = 1;
-    ray.t_high = -std::numeric_limits<float>::infinity();
+    rays_[number].t_high = -std::numeric_limits<float>::infinity();
+    ++done_;
     return true;
   }
 
@@ -145,6 +160,7 @@ class StreamRays {
   const ParticleTests tests_;
   const Ray* source_ = nullptr;
   std::uint8_t* occluded_ = nullptr;
+  std::size_t done_ = 0;
   std::unique_ptr<WalkRay[]> rays_;
 };
 

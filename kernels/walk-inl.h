@@ -48,9 +48,11 @@ HWY_INLINE std::size_t ListChild(const std::uint32_t* HWY_RESTRICT items, const 
 //   Prefetch(place, level), PrefetchBehind(...)       what Open will read; the second where that takes two reads
 // Items:
 //   uint32 Meet(planes, item, is_last)                children met, a bit each; is_last: they are leaves
-//   Visit(begin, end, list, count)                    the items of the list, in a leaf
+//   Visit(begin, end, list, count)                    the items of the list, in a leaf; the list is theirs from then on
 //   VisitPick(inner, list, count)                     the same with a few particles
 //   Prefetch(begin, end), PrefetchBehind(begin, end)
+//   done()                                            how many items need no more, so far; only grows
+//   KeepOpen(list, count)                             leaves them out of a list, and returns how many are left
 template <class Nodes, class Items>
 class Walks {
  public:
@@ -75,6 +77,7 @@ class Walks {
     walk.level = 0;
     walk.next = nodes_.Root();
     walk.next_count = count;
+    walk.done = 0;
     walk.is_looked_up = false;
     used_ += walk.room * (levels_ + 1);
     active_[added_++] = &walk;
@@ -101,6 +104,7 @@ class Walks {
   struct Level {
     typename Nodes::Node node;
     std::size_t count;   // items, in the list of the level
+    std::size_t done;    // of the walk, when the masks were made
     std::uint32_t left;  // children still to be visited
   };
   struct Walk {
@@ -108,6 +112,7 @@ class Walks {
     unsigned level;  // of `next`
     Place next;
     std::size_t next_count;
+    std::size_t done;   // items that need no more
     bool is_looked_up;  // only where what is read stands behind an index
     std::size_t room;   // of a list
     std::uint32_t* lists;
@@ -131,18 +136,21 @@ class Walks {
         return true;
       }
     }
+    const std::size_t done = items_.done();
     if (walk.level == levels_) {
       items_.Visit(nodes_.Begin(walk.next), nodes_.End(walk.next), walk.list(walk.level), walk.next_count);
       --walk.level;
     } else {
       VisitNode(walk);
     }
+    walk.done += items_.done() - done;
     return Choose(walk);
   }
 
   HWY_INLINE void VisitNode(Walk& walk) {
     Level& level = walk.levels[walk.level];
     level.count = walk.next_count;
+    level.done = walk.done;
     NodePlanes planes;
     ParticlePick inner;
     nodes_.Open(walk.next, walk.level, walk.octant, level.node, planes, inner);
@@ -167,22 +175,28 @@ class Walks {
 
   HWY_INLINE bool Choose(Walk& walk) {
     unsigned at = walk.level;
-    while (walk.levels[at].left == 0) {
-      if (at == 0) return false;
-      --at;
+    for (;;) {
+      while (walk.levels[at].left == 0) {
+        if (at == 0) return false;
+        --at;
+      }
+      Level& level = walk.levels[at];
+      const unsigned k = nearest_child(level.left, nodes_.Flip(level.node));
+      level.left &= ~(1u << k);
+      std::uint32_t* const list = walk.list(at + 1);
+      walk.next_count = ListChild(walk.list(at), walk.mask(at), level.count, k, list);
+      // Items may have been done since, in children visited before.
+      if (level.done != walk.done) walk.next_count = items_.KeepOpen(list, walk.next_count);
+      if (walk.next_count == 0) continue;
+      walk.level = at + 1;
+      walk.next = nodes_.Child(level.node, k);
+      if (walk.level == levels_) {
+        items_.Prefetch(nodes_.Begin(walk.next), nodes_.End(walk.next));
+      } else {
+        nodes_.Prefetch(walk.next, walk.level);
+      }
+      return true;
     }
-    Level& level = walk.levels[at];
-    const unsigned k = nearest_child(level.left, nodes_.Flip(level.node));
-    level.left &= ~(1u << k);
-    walk.level = at + 1;
-    walk.next = nodes_.Child(level.node, k);
-    if (walk.level == levels_) {
-      items_.Prefetch(nodes_.Begin(walk.next), nodes_.End(walk.next));
-    } else {
-      nodes_.Prefetch(walk.next, walk.level);
-    }
-    walk.next_count = ListChild(walk.list(at), walk.mask(at), level.count, k, walk.list(walk.level));
-    return true;
   }
 
   const Nodes& nodes_;
