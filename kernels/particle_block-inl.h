@@ -267,6 +267,19 @@ HWY_NOINLINE void PrefetchDrawnBehind(const PkdTree& tree, const Positions& posi
       DrawnPlaces(tree, begin, end).Each([&](std::uint64_t place) HWY_ATTR { positions.prefetch_behind(place); });
 }
 
+// Calls visit(particles) with what a filter has left of a run, whichever way is the shortest: the copies, the run as it
+// is, or a vector of particles put together after the other.
+template <class Positions, class Visit>
+HWY_INLINE void VisitDrawn(const PkdTree& tree, const Positions& positions, std::uint64_t begin, std::uint64_t end,
+                           const Visit& visit) {
+  if (tree.copies.exist()) return visit(CopiedRun(tree, begin, end));
+  const std::size_t lanes = hn::Lanes(hn::CappedTag<float, ParticlePick::most>());
+  DrawnPlaces drawn(tree, begin, end);
+  if (!drawn.AreFew(lanes)) return visit(FilteredRun<Positions>(tree, positions, begin, end));
+  ParticlePick pick;
+  while (drawn.Take(positions, lanes, pick)) visit(pick);
+}
+
 // The tests. Of a PkdTree they know the radii.
 class ParticleTests {
  public:

@@ -56,19 +56,18 @@ class RayPacket {
     const D d;
     const std::size_t n = hn::Lanes(d);
     const V big = hn::Set(d, 3e38f);
-    const float rays = static_cast<float>(hwy::PopCount(active));
+    // The axis lies between the first and the last of the rays: opposite corners, when they come from a square of
+    // pixels.
+    const auto first = static_cast<std::size_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(active));
+    const auto last = static_cast<std::size_t>(31 - hwy::Num0BitsAboveMS1Bit_Nonzero32(active));
     float squared_length = 0.0f;
     for (std::size_t c = 0; c < 3; ++c) {
-      V origins = hn::Zero(d);
-      V directions = hn::Zero(d);
       V o_low = big, o_high = hn::Neg(big), v_low = big, v_high = hn::Neg(big);
       for (std::size_t i = 0; i < size; i += n) {
         const auto is_active = LanesOf(active, i);
         const V o = hn::Load(d, lanes.origin[c] + i);
         const V v = hn::Load(d, lanes.inverse[c] + i);
         hn::Store(hn::Neg(hn::Mul(o, v)), d, start[c] + i);
-        origins = hn::Add(origins, hn::IfThenElseZero(is_active, o));
-        directions = hn::Add(directions, hn::IfThenElseZero(is_active, hn::Load(d, lanes.direction[c] + i)));
         o_low = hn::Min(o_low, hn::IfThenElse(is_active, o, big));
         o_high = hn::Max(o_high, hn::IfThenElse(is_active, o, hn::Neg(big)));
         v_low = hn::Min(v_low, hn::IfThenElse(is_active, v, big));
@@ -83,8 +82,8 @@ class RayPacket {
       beam.far_inverse[c] = is_up ? fastest : slowest;
       beam.near_start[c] = -(is_up ? high : low) * beam.near_inverse[c];
       beam.far_start[c] = -(is_up ? low : high) * beam.far_inverse[c];
-      beam.origin[c] = hn::GetLane(hn::SumOfLanes(d, origins)) / rays;
-      beam.direction[c] = hn::GetLane(hn::SumOfLanes(d, directions));
+      beam.origin[c] = 0.5f * (lanes.origin[c][first] + lanes.origin[c][last]);
+      beam.direction[c] = lanes.direction[c][first] + lanes.direction[c][last];
       squared_length += beam.direction[c] * beam.direction[c];
     }
     const float length = std::sqrt(squared_length);
@@ -236,12 +235,7 @@ class StreamPackets {
 
   // Not inlined: without a filter it is never called.
   HWY_NOINLINE void VisitFiltered(std::uint64_t begin, std::uint64_t end, std::uint32_t* list, std::size_t count) {
-    if (tree_.copies.exist()) return Visit(CopiedRun(tree_, begin, end), list, count);
-    const std::size_t lanes = hn::Lanes(hn::CappedTag<float, ParticleTests::most_lanes>());
-    DrawnPlaces drawn(tree_, begin, end);
-    if (!drawn.AreFew(lanes)) return Visit(FilteredRun<Positions>(tree_, positions_, begin, end), list, count);
-    ParticlePick pick;
-    while (drawn.Take(positions_, lanes, pick)) Visit(pick, list, count);
+    VisitDrawn(tree_, positions_, begin, end, [&](const auto& particles) HWY_ATTR { Visit(particles, list, count); });
   }
 
   template <class Particles>

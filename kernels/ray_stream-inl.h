@@ -77,12 +77,7 @@ class StreamRays {
  private:
   // Not inlined: without a filter it is never called.
   HWY_NOINLINE void VisitFiltered(std::uint64_t begin, std::uint64_t end, std::uint32_t* list, std::size_t count) {
-    if (tree_.copies.exist()) return Visit(CopiedRun(tree_, begin, end), list, count);
-    const std::size_t lanes = hn::Lanes(hn::CappedTag<float, ParticleTests::most_lanes>());
-    DrawnPlaces drawn(tree_, begin, end);
-    if (!drawn.AreFew(lanes)) return Visit(FilteredRun<Positions>(tree_, positions_, begin, end), list, count);
-    ParticlePick pick;
-    while (drawn.Take(positions_, lanes, pick)) Visit(pick, list, count);
+    VisitDrawn(tree_, positions_, begin, end, [&](const auto& particles) HWY_ATTR { Visit(particles, list, count); });
   }
 
   template <class Particles>
