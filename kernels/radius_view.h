@@ -58,4 +58,10 @@ struct RadiusView {
   }
 };
 
+inline RadiusView uniform_radius(double radius) {
+  RadiusView view;
+  view.uniform = radius;
+  return view;
+}
+
 }  // namespace insitu::kernels

@@ -36,10 +36,14 @@ struct Layout {
   bool rows = false;         // through a table of pointers to records
 };
 
-constexpr Layout layouts[] = {{"f32_records", Scalar::f32, 12},          {"f32_columns", Scalar::f32, 0},
-                              {"f32_in_structs_of_32", Scalar::f32, 32}, {"f64_records", Scalar::f64, 24},
-                              {"f64_columns", Scalar::f64, 0},           {"f64_in_structs_of_64", Scalar::f64, 64},
-                              {"f64_rows", Scalar::f64, 24, true},       {"i32_lattice", Scalar::i32, 12}};
+constexpr Layout layouts[] = {{"f32_records", Scalar::f32, 12},
+                              {"f32_columns", Scalar::f32, 0},
+                              {"f32_in_structs_of_32", Scalar::f32, 32},
+                              {"f64_records", Scalar::f64, 24},
+                              {"f64_columns", Scalar::f64, 0},
+                              {"f64_in_structs_of_64", Scalar::f64, 64},
+                              {"f64_scattered_rows", Scalar::f64, 24, true},
+                              {"i32_lattice", Scalar::i32, 12}};
 constexpr double lattice_scale = 1.0 / (1 << 20);
 
 void store(Scalar type, std::byte* to, float value) {

@@ -24,7 +24,8 @@ bool scan_records(const Positions& positions, std::uint64_t begin, std::uint64_t
     typename Positions::Key upper[3];
     if (!kernels::bounds_of_records(positions.scalars(begin, 0), static_cast<std::size_t>(end - begin), lower, upper))
       return false;
-    ScanResult range = {{}, {}, 0.0, end - begin};
+    ScanResult range = nothing_found();
+    range.drawn = end - begin;
     for (int c = 0; c < 3; ++c) {
       range.lower[c] = static_cast<double>(lower[c]);
       range.upper[c] = static_cast<double>(upper[c]);
@@ -53,6 +54,7 @@ ScanResult scan(const kernels::PkdTree& tree, bool judge_radius) {
       if (each_radius) {
         const double radius = tree.radius.value(item);
         if (!is_good_radius(radius)) continue;
+        result.radius_min = std::min(result.radius_min, radius);
         result.radius_max = std::max(result.radius_max, radius);
       }
       for (int c = 0; c < 3; ++c) {
@@ -68,7 +70,7 @@ ScanResult scan(const kernels::PkdTree& tree, bool judge_radius) {
                                            nothing_found(), scan_range, joined);
   if (!each_radius && judge_radius) {
     if (!is_good_radius(tree.radius.uniform)) return nothing_found();
-    result.radius_max = tree.radius.uniform;
+    result.radius_min = result.radius_max = tree.radius.uniform;
   }
   return result;
 }
@@ -81,6 +83,7 @@ ScanResult joined(const ScanResult& a, const ScanResult& b) {
     both.lower[c] = std::min(a.lower[c], b.lower[c]);
     both.upper[c] = std::max(a.upper[c], b.upper[c]);
   }
+  both.radius_min = std::min(a.radius_min, b.radius_min);
   both.radius_max = std::max(a.radius_max, b.radius_max);
   both.drawn = a.drawn + b.drawn;
   return both;

@@ -14,13 +14,14 @@ constexpr double largest_coordinate = 1e100;
 struct ScanResult {
   double lower[3];  // of the centres of drawn particles
   double upper[3];
+  double radius_min;
   double radius_max;
   std::uint64_t drawn;
 };
 
 constexpr ScanResult nothing_found() {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  return {{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}, 0.0, 0};
+  return {{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}, infinity, 0.0, 0};
 }
 // Of the particles of both.
 ScanResult joined(const ScanResult& a, const ScanResult& b);

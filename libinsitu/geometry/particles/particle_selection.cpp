@@ -55,8 +55,9 @@ class Pass {
         found.lower[c] = std::min(found.lower[c], x);
         found.upper[c] = std::max(found.upper[c], x);
       }
-      found.radius_max =
-          std::max(found.radius_max, each_radius ? tree_.radius.value(block.item[i]) : tree_.radius.uniform);
+      const double radius = each_radius ? tree_.radius.value(block.item[i]) : tree_.radius.uniform;
+      found.radius_min = std::min(found.radius_min, radius);
+      found.radius_max = std::max(found.radius_max, radius);
     }
   }
 

@@ -133,7 +133,7 @@ void Particles::build(Budget& budget) {
   ScanResult scan = scan_particles(tree_, !automatic);
   if (automatic) {
     tree_.radius.uniform = automatic_radius(scan, 1.0 / arrays.position_scale) * arrays.radius_scale;
-    scan.radius_max = tree_.radius.uniform;
+    scan.radius_min = scan.radius_max = tree_.radius.uniform;
   }
   all_ = scan;
   size_limit_ = arrays.treelet_share > 0.0 ? size_limit(tree_, all_) : std::numeric_limits<double>::infinity();
@@ -161,6 +161,9 @@ void Particles::build(Budget& budget) {
       build_copy(budget);
       break;
   }
+  // An array, or a table, in which all are the same is as fast as one radius for all.
+  if (scan.radius_min == scan.radius_max && scan.drawn == arrays.position.count)
+    tree_.radius = kernels::uniform_radius(scan.radius_max);
   apply_filter(budget);
   add_treelets(budget);
   built_ = true;

@@ -77,6 +77,7 @@ void SizeClasses::Class::clear() {
 bool SizeClasses::Class::add_treelets(Budget& budget, std::uint64_t most_bytes) {
   tree.selected = selection.places();
   tree.radius_max = selection.found().radius_max;
+  if (selection.found().radius_min == tree.radius_max) tree.radius = kernels::uniform_radius(tree.radius_max);
   const unsigned thinning = tree.selected.thinning;
   const double longest = std::ldexp(most_per_treelet, static_cast<int>(thinning));
   treelets = treelet_shape(tree.count, treelet_depth(tree.count, longest, most_bytes));

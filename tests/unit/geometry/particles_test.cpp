@@ -1,6 +1,7 @@
 // A set of particles: radii, bounds, lattices of integers, attributes, and one answer for every policy and layout.
 #include "geometry/particles/particles.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -92,6 +93,33 @@ TEST(Particles, TypesOutsideOfTheTableAreSkipped) {
   EXPECT_EQ(hits[1].item, 1u);
   EXPECT_FALSE(hits[2].found());
   EXPECT_FALSE(hits[3].found());
+}
+
+TEST(Particles, RadiiThatAreAllTheSameAreOneForAll) {
+  const std::vector<double> x = {0, 0, 0, 5, 0, 0, 10, 0, 0};
+  const auto built = [&](const std::vector<float>& radius, Particles& particles) {
+    ParticleArrays arrays;
+    arrays.position = positions_of(x);
+    arrays.radius = view_of(radius, 1, INSITU_USE_RADIUS);
+    arrays.radius_scale = 0.5;
+    Budget budget(0);
+    particles.bind(std::move(arrays));
+    particles.build(budget);
+    kernels::Ray rays[3];
+    kernels::Hit hits[3];
+    for (int i = 0; i < 3; ++i) rays[i] = ray_along_z(5.0 * i, 0.0, -10.0);
+    particles.first_hits(rays, hits, 3);
+    return std::vector<double>{hits[0].t, hits[1].t, hits[2].t};
+  };
+  const std::vector<float> same = {2.0f, 2.0f, 2.0f};
+  Particles equal("p", ParticleOrder::index, false);
+  EXPECT_THAT(built(same, equal), ::testing::ElementsAre(9.0, 9.0, 9.0));
+  EXPECT_EQ(equal.tree().radius.kind, kernels::RadiusView::Kind::uniform);
+  // One that is not drawn has no radius: it must not be given that of the others.
+  const std::vector<float> holed = {2.0f, 0.0f, 2.0f};
+  Particles some("p", ParticleOrder::index, false);
+  EXPECT_THAT(built(holed, some), ::testing::ElementsAre(9.0, kernels::Hit{}.t, 9.0));
+  EXPECT_EQ(some.tree().radius.kind, kernels::RadiusView::Kind::per_item);
 }
 
 // Against the radii worked out here: at entries, between them, beyond both ends, and where there is none.
