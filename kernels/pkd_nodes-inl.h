@@ -14,7 +14,7 @@
 
 #include "kernels/child_order.h"
 #include "kernels/node_planes-inl.h"
-#include "kernels/particle_block-inl.h"
+#include "kernels/particle_runs-inl.h"
 #include "kernels/treelets.h"
 
 HWY_BEFORE_NAMESPACE();

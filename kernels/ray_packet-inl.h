@@ -7,7 +7,7 @@
 #define INSITU_KERNELS_RAY_PACKET_INL_H_
 #endif
 
-#include "kernels/particle_block-inl.h"
+#include "kernels/particle_tests-inl.h"
 #include "kernels/pkd_enter-inl.h"
 #include "kernels/pkd_single-inl.h"
 #include "kernels/walk-inl.h"

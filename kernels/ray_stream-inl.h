@@ -10,7 +10,7 @@
 
 #include <memory>
 
-#include "kernels/particle_block-inl.h"
+#include "kernels/particle_tests-inl.h"
 #include "kernels/pkd_enter-inl.h"
 #include "kernels/pkd_single-inl.h"
 #include "kernels/walk-inl.h"

@@ -18,7 +18,7 @@
 
 #include "kernels/child_order.h"
 #include "kernels/node_planes-inl.h"
-#include "kernels/particle_block-inl.h"
+#include "kernels/particle_runs-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace insitu::kernels::HWY_NAMESPACE {
