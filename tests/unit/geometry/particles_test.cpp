@@ -97,12 +97,12 @@ TEST(Particles, TypesOutsideOfTheTableAreSkipped) {
 
 TEST(Particles, RadiiThatAreAllTheSameAreOneForAll) {
   const std::vector<double> x = {0, 0, 0, 5, 0, 0, 10, 0, 0};
+  Budget budget(0);
   const auto built = [&](const std::vector<float>& radius, Particles& particles) {
     ParticleArrays arrays;
     arrays.position = positions_of(x);
     arrays.radius = view_of(radius, 1, INSITU_USE_RADIUS);
     arrays.radius_scale = 0.5;
-    Budget budget(0);
     particles.bind(std::move(arrays));
     particles.build(budget);
     kernels::Ray rays[3];
