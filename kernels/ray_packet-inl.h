@@ -318,7 +318,7 @@ class StreamPackets {
     const D d;
     V latest = hn::Set(d, -1.0f);
     for (std::size_t i = 0; i < size; i += hn::Lanes(d))
-      latest = hn::Max(latest, hn::IfThenElse(packet.LanesOf(beam.active, i), hn::Load(d, packet.lanes.t_high + i),
+      latest = hn::Max(latest, hn::IfThenElse(RayPacket::LanesOf(beam.active, i), hn::Load(d, packet.lanes.t_high + i),
                                               hn::Set(d, -1.0f)));
     beam.latest = hn::GetLane(hn::MaxOfLanes(d, latest));
   }
@@ -352,7 +352,7 @@ class StreamPackets {
       const V t_low = hn::Load(d, packet.lanes.t_low + i);
       const V s = hn::Sqrt(hn::Max(hn::Sub(r2, distance2), hn::Zero(d)));
       const V enter = hn::Sub(b, s);
-      const auto candidate = hn::And(hn::And(close, packet.LanesOf(active, i)),
+      const auto candidate = hn::And(hn::And(close, RayPacket::LanesOf(active, i)),
                                      hn::And(hn::Le(enter, t_high), hn::Ge(hn::Add(b, s), t_low)));
       if (hn::AllFalse(d, candidate)) continue;
       // A ray that starts within the sphere, shrunk as well as grown, leaves it instead.
