@@ -98,12 +98,6 @@ void read_attributes(const insitu_particles_desc& desc, Reader& reader, Particle
     arrays.payload.push_back(reader.view(desc.payload[i], use_payload, "payload number " + std::to_string(i)));
 }
 
-const kernels::ArrayView* find_attribute(const ParticleArrays& arrays, const std::string& name) {
-  for (const NamedView& attribute : arrays.attributes)
-    if (attribute.name == name) return &attribute.view;
-  return name == "type" && arrays.type ? &*arrays.type : nullptr;
-}
-
 // After the attributes.
 void read_radius_map(const insitu_particles_desc& desc, const Reader& reader, ParticleArrays& arrays) {
   constexpr std::uint64_t most_entries = 65536;

@@ -456,11 +456,14 @@ Surface Particles::surface(std::uint64_t item, const double point[3]) const {
 
 double Particles::radius(std::uint64_t item) const { return tree_.radius.value(item) * arrays_->position_scale; }
 
-const ArrayView* Particles::attribute(const std::string& name) const {
-  if (!arrays_) return nullptr;
-  for (const NamedView& attribute : arrays_->attributes)
+const ArrayView* find_attribute(const ParticleArrays& arrays, const std::string& name) {
+  for (const NamedView& attribute : arrays.attributes)
     if (attribute.name == name) return &attribute.view;
-  return name == "type" && arrays_->type ? &*arrays_->type : nullptr;
+  return name == "type" && arrays.type ? &*arrays.type : nullptr;
+}
+
+const ArrayView* Particles::attribute(const std::string& name) const {
+  return arrays_ ? find_attribute(*arrays_, name) : nullptr;
 }
 
 std::string Particles::attribute_names() const {

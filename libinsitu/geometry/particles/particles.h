@@ -51,6 +51,9 @@ struct ParticleArrays {
   std::vector<kernels::ArrayView> payload;
 };
 
+// "type" is the type array. nullptr when there is none of that name.
+const kernels::ArrayView* find_attribute(const ParticleArrays& arrays, const std::string& name);
+
 struct ValueRange {
   double low;
   double high;
@@ -116,7 +119,7 @@ class Particles : public TransparentGeometry {
   void centre(std::uint64_t item, double out[3]) const;
   double radius(std::uint64_t item) const;
 
-  // "type" is the type array. nullptr when there is none of that name; attribute_names() lists those that are.
+  // As find_attribute(); attribute_names() lists those that are.
   const kernels::ArrayView* attribute(const std::string& name) const;
   std::string attribute_names() const;
 
