@@ -220,13 +220,11 @@ class DrawnPlaces {
   std::uint64_t end_;
 };
 
-// The same from the copies of their centres.
+// Copies of the centres of what a filter leaves.
 class CopiedRun {
  public:
-  HWY_INLINE CopiedRun(const PkdTree& tree, std::uint64_t begin, std::uint64_t end)
-      : copies_(tree.copies),
-        begin_(copies_.rank(tree.selected, begin)),
-        size_(static_cast<std::size_t>(copies_.rank(tree.selected, end) - begin_)) {}
+  HWY_INLINE CopiedRun(const SelectedCopies& copies, std::uint64_t begin, std::uint64_t end)
+      : copies_(copies), begin_(begin), size_(static_cast<std::size_t>(end - begin)) {}
 
   HWY_INLINE std::size_t size() const { return size_; }
   HWY_INLINE std::uint64_t place(std::size_t i) const { return copies_.place_of[begin_ + i]; }
@@ -252,18 +250,19 @@ class CopiedRun {
   std::size_t size_;
 };
 
-// What a walk under a filter will read of a leaf, as prefetch_run() and PrefetchRunBehind without one.
+// What a walk under a filter will read of a leaf, as prefetch_run() and PrefetchRunBehind without one; `copied`: begin
+// and end count copies.
 template <class Positions>
-HWY_NOINLINE void PrefetchDrawn(const PkdTree& tree, const Positions& positions, std::uint64_t begin,
-                                std::uint64_t end) {
-  if (tree.copies.exist()) return CopiedRun(tree, begin, end).Prefetch();
+HWY_NOINLINE void PrefetchDrawn(const PkdTree& tree, const Positions& positions, std::uint64_t begin, std::uint64_t end,
+                                bool copied) {
+  if (copied) return CopiedRun(tree.copies, begin, end).Prefetch();
   DrawnPlaces(tree, begin, end).Each([&](std::uint64_t place) HWY_ATTR { positions.prefetch(place); });
 }
 template <class Positions>
 HWY_NOINLINE void PrefetchDrawnBehind(const PkdTree& tree, const Positions& positions, std::uint64_t begin,
-                                      std::uint64_t end) {
+                                      std::uint64_t end, bool copied) {
   if constexpr (Positions::is_indirect)
-    if (!tree.copies.exist())
+    if (!copied)
       DrawnPlaces(tree, begin, end).Each([&](std::uint64_t place) HWY_ATTR { positions.prefetch_behind(place); });
 }
 
@@ -271,8 +270,8 @@ HWY_NOINLINE void PrefetchDrawnBehind(const PkdTree& tree, const Positions& posi
 // is, or a vector of particles put together after the other.
 template <class Positions, class Visit>
 HWY_INLINE void VisitDrawn(const PkdTree& tree, const Positions& positions, std::uint64_t begin, std::uint64_t end,
-                           const Visit& visit) {
-  if (tree.copies.exist()) return visit(CopiedRun(tree, begin, end));
+                           bool copied, const Visit& visit) {
+  if (copied) return visit(CopiedRun(tree.copies, begin, end));
   const std::size_t lanes = hn::Lanes(hn::CappedTag<float, ParticlePick::most>());
   DrawnPlaces drawn(tree, begin, end);
   if (!drawn.AreFew(lanes)) return visit(FilteredRun<Positions>(tree, positions, begin, end));

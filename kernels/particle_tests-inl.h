@@ -40,9 +40,11 @@ class ParticleTests {
   // Calls confirm(ray, place, is_certain) for the pairs that may hit; where it returns true the ray needs no more, and
   // keep_open(list, size) leaves such rays out of the list.
   //
-  // What is certain is hit in truth, and from outside, behind the start and before the end of the ray: the sphere
-  // without its margin is hit, the one with it begins behind t_low and two margins (which is the start of the ray and
-  // one), and the hit lies before the middle, b, which is nearer than t_high less two margins.
+  // What is certain is hit in truth, behind the start and before the end of the ray. The sphere without its margin is
+  // hit, and either from outside: the one with it begins behind t_low and two margins (which is the start of the ray
+  // and one), and the hit lies before the middle, b, which is nearer than t_high less two margins. Or it is at least
+  // left in time: with its margin it ends before t_high less two margins, and the middle, or the end without the
+  // margin, is behind t_low and two margins.
   template <class Particles, class Rays, class ConfirmHit, class KeepOpen>
   HWY_INLINE void VisitTogether(const Particles& particles, const Rays* rays, std::uint32_t* list,
                                 std::size_t list_size, const ConfirmHit& confirm, const KeepOpen& keep_open) const {
@@ -79,15 +81,20 @@ class ParticleTests {
         if (HWY_LIKELY(hn::AllFalse(d, close))) continue;
         const V b = hn::MulAdd(x, dx, hn::MulAdd(y, dy, hn::MulSub(z, dz, hn::Set(d, ray.foot))));
         const V s = hn::Sqrt(hn::Max(hn::Sub(r2, distance2), hn::Zero(d)));
-        const V t_high = hn::Set(d, ray.t_high);
-        const V t_low = hn::Set(d, ray.t_low);
-        const V shrink = hn::Set(d, shrink_);
         const V enter = hn::Sub(b, s);
-        const auto in_time = hn::And(hn::Le(enter, t_high), hn::Ge(hn::Add(b, s), t_low));
+        const V leave = hn::Add(b, s);
+        const auto in_time = hn::And(hn::Le(enter, hn::Set(d, ray.t_high)), hn::Ge(leave, hn::Set(d, ray.t_low)));
         std::uint32_t possible = MaskBits(d, hn::And(close, in_time)) & drawn;
-        std::uint32_t certain =
-            possible & MaskBits(d, hn::And(hn::Le(distance2, inner2), hn::And(hn::Gt(enter, hn::Add(t_low, shrink)),
-                                                                              hn::Lt(b, hn::Sub(t_high, shrink)))));
+        if (possible == 0) continue;
+        const V begin = hn::Set(d, ray.t_low + shrink_);
+        const V end = hn::Set(d, ray.t_high - shrink_);
+        const std::uint32_t is_hit = possible & MaskBits(d, hn::Lt(distance2, inner2));
+        std::uint32_t certain = is_hit & MaskBits(d, hn::Or(hn::And(hn::Gt(enter, begin), hn::Lt(b, end)),
+                                                            hn::And(hn::Gt(b, begin), hn::Lt(leave, end))));
+        if (certain == 0 && is_hit != 0) {
+          const V inner_leave = hn::Add(b, hn::Sqrt(hn::Max(hn::Sub(inner2, distance2), hn::Zero(d))));
+          certain = is_hit & MaskBits(d, hn::And(hn::Gt(inner_leave, begin), hn::Lt(leave, end)));
+        }
         possible &= ~certain;
         bool done = false;
         for (; certain != 0 && !done; certain &= certain - 1)
@@ -101,10 +108,10 @@ class ParticleTests {
   }
 
   // Calls visit(place, centre, radius with margin) for the particles that the beam can touch up to the distance
-  // `latest`.
-  template <class Particles, class Beam, class VisitParticle>
-  HWY_INLINE void VisitWithinBeam(const Particles& particles, const Beam& beam, float latest,
-                                  const VisitParticle& visit) const {
+  // beam.latest, and update() now and then, which may make that less.
+  template <class Particles, class Beam, class VisitParticle, class Update>
+  HWY_INLINE void VisitWithinBeam(const Particles& particles, const Beam& beam, const VisitParticle& visit,
+                                  const Update& update) const {
     const hn::CappedTag<float, most_lanes> d;
     using V = hn::Vec<decltype(d)>;
     const std::size_t lanes = hn::Lanes(d);
@@ -127,14 +134,24 @@ class ParticleTests {
       const V wide = hn::Add(r, hn::Set(d, beam.start));
       const V t = hn::Mul(hn::Max(hn::Add(b, wide), hn::Zero(d)), hn::Set(d, beam.stretch));
       const V reach = hn::MulAdd(hn::Set(d, beam.growth), t, wide);
-      const auto meets =
-          hn::And(hn::Le(distance2, hn::Mul(reach, reach)), hn::Le(hn::Sub(b, reach), hn::Set(d, latest)));
-      for (std::uint32_t bits = MaskBits(d, meets) & drawn; bits != 0; bits &= bits - 1) {
+      const V latest = hn::Set(d, beam.latest);
+      const auto meets = hn::And(hn::Le(distance2, hn::Mul(reach, reach)), hn::Le(hn::Sub(b, reach), latest));
+      std::uint32_t bits = MaskBits(d, meets) & drawn;
+      if (bits == 0) continue;
+      // What holds all rays from their begin to behind the latest distance is not hit before. A sphere, less what the
+      // rays are off the axis, holds a piece of the axis when it holds its ends.
+      const V off =
+          hn::MulAdd(hn::Set(d, beam.growth), latest, hn::Set(d, beam.start + beam.uncertain + 2.0f * shrink_));
+      const V inner = hn::Max(hn::Sub(hn::Mul(r, hn::Set(d, below_)), off), hn::Zero(d));
+      const V far = hn::Max(hn::Abs(hn::Sub(b, hn::Set(d, beam.begin))), hn::Abs(hn::Sub(latest, b)));
+      bits &= ~MaskBits(d, hn::Lt(hn::MulAdd(far, far, distance2), hn::Mul(inner, inner)));
+      for (; bits != 0; bits &= bits - 1) {
         const auto i = static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(bits));
         float centre[3];
         particles.Centre(first + i, centre);
         visit(particles.place(first + i), centre, uniform_ ? radius_ : radii[i]);
       }
+      update();
     }
   }
 

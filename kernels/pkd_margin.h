@@ -20,14 +20,13 @@ struct TreeMargin {
   double value;
   double extent;  // diagonal of the tree
   bool fits;
+  double farthest;  // coordinates of origins: rays from behind it lose more in double than the margin has to spare
 
-  // Rays from very far away lose more in double than the margin has to spare.
   bool Fits(const Ray& ray) const {
     double distance = 0.0;
     for (int c = 0; c < 3; ++c) distance = std::max(distance, std::abs(ray.origin[c]));
-    return Fits(distance);
+    return distance < farthest;
   }
-  bool Fits(double distance) const { return fits && 128.0 * f64_unit * distance < 4.0 * f32_unit * extent; }
 
   explicit TreeMargin(const PkdTree& tree) {
     double diagonal2 = 0.0;
@@ -40,6 +39,7 @@ struct TreeMargin {
     extent = std::sqrt(diagonal2);
     value = 32.0 * f32_unit * (2.0 * extent + magnitude);
     fits = value < tree.radius_max && extent > 1e-12 && extent + magnitude < 1e12;
+    farthest = fits ? 4.0 * f32_unit * extent / (128.0 * f64_unit) : 0.0;
   }
 };
 

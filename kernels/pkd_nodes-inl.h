@@ -82,6 +82,7 @@ class PkdNodes {
     }
     return place;
   }
+  static constexpr bool are_copied() { return false; }
   std::uint64_t Begin(const Place& place) const { return place.begin; }
   std::uint64_t End(const Place& place) const { return place.end; }
 

@@ -1,6 +1,9 @@
 // How the centre at a place of a tree is read: one small class per layout, chosen once per call of a kernel, so that
-// the traversal itself has no branch on types. `Key` is the type in which coordinates are compared.
+// the traversal itself has no branch on types. `Key` is the type in which coordinates are compared; is_exact_in_f32:
+// centre_f32() loses nothing.
 #pragma once
+
+#include <type_traits>
 
 #include "kernels/pkd_tree.h"
 #include "kernels/prefetch.h"
@@ -32,6 +35,7 @@ class PlacedPositions {
     return load<T>(base_[axis] + static_cast<std::ptrdiff_t>(place) * stride_);
   }
   static constexpr bool is_indirect = false;
+  static constexpr bool is_exact_in_f32 = std::is_same_v<T, float>;
   static constexpr bool may_be_packed = true;  // see packed_records()
   void prefetch(std::uint64_t place) const {
     const std::ptrdiff_t offset = static_cast<std::ptrdiff_t>(place) * stride_;
@@ -83,6 +87,7 @@ class IndexedPositions {
   // Reading a centre takes two reads, one after the other: prefetch() asks for the first, prefetch_behind() for the
   // second.
   static constexpr bool is_indirect = true;
+  static constexpr bool is_exact_in_f32 = std::is_same_v<T, float>;
   static constexpr bool may_be_packed = false;
   void prefetch(std::uint64_t place) const { prefetch_line(index_ + place); }
   void prefetch_run(std::uint64_t begin, std::uint64_t end) const {
@@ -121,6 +126,7 @@ class GeneralPositions {
     return tree_.position.value(tree_.position_of_place(place), static_cast<std::uint32_t>(axis));
   }
   static constexpr bool is_indirect = false;
+  static constexpr bool is_exact_in_f32 = false;
   static constexpr bool may_be_packed = false;
   void prefetch(std::uint64_t place) const {
     if (tree_.position_by_place && !tree_.position.rows) prefetch_line(tree_.position.address(place, 0));

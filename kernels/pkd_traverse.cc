@@ -34,7 +34,7 @@ void FirstHitsIn(const PkdTree& tree, const Ray* rays, Hit* hits, std::size_t co
     return FirstHitsOver(tree, positions, nodes, margin, rays, hits, count);
   }
   for (std::size_t i = 0; i < count; ++i) {
-    FirstHitVisitor visitor(rays[i], hits[i]);
+    FirstHitVisitor visitor(rays[i], hits[i], is_own_hit(tree, hits[i]));
     TraverseTree(tree, positions, rays[i], visitor);
   }
 }

@@ -68,6 +68,7 @@ struct PkdTree {
   SelectedCopies copies;                     // of these; or none
   PreferItem prefer = nullptr;
   const void* prefer_context = nullptr;
+  bool continues = false;  // hits found before are of the same particles, in another tree: `prefer` holds for them too
 
   std::uint64_t item(std::uint64_t place) const {
     if (index32 != nullptr) return index32[place];

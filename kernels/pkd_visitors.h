@@ -10,13 +10,16 @@
 
 namespace insitu::kernels {
 
+// Before it is traced: the hit counts as one of this tree.
+inline bool is_own_hit(const PkdTree& tree, const Hit& hit) { return tree.continues && hit.found(); }
+
 class FirstHitVisitor {
  public:
   static constexpr bool one_of_coincident = true;
 
   FirstHitVisitor() = default;
   // `is_here`: the hit is one of this tree.
-  FirstHitVisitor(const Ray& ray, Hit& hit, bool is_here = false)
+  FirstHitVisitor(const Ray& ray, Hit& hit, bool is_here)
       : hit_(&hit), limit_(std::min(ray.t_max, hit.t)), here_(is_here) {}
 
   double t_limit() const { return limit_; }

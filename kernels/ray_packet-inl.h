@@ -30,8 +30,10 @@ struct RayBeam {
   float direction[3];
   float start;
   float growth;
-  float stretch;  // 1 / (1 - growth)
-  float latest;   // the farthest distance that any of its rays still looks at
+  float stretch;    // 1 / (1 - growth)
+  float begin;      // the least t_low of its rays
+  float uncertain;  // by how much the points where they begin may be off the axis' point there
+  float latest;     // the farthest distance that any of its rays still looks at
   std::uint32_t packet;
   std::uint32_t active;  // its rays
 };
@@ -47,6 +49,8 @@ class RayPacket {
   HWY_ALIGN float best_earliest[size];
   HWY_ALIGN float t_certain[size];  // candidates begin behind it
   HWY_ALIGN std::uint32_t best_place[size];
+  HWY_ALIGN float best_centre[3][size];
+  HWY_ALIGN double limit[size];  // of the ray as it is: what has been confirmed is not behind it
   std::uint32_t noted;
   std::uint32_t here;  // lanes whose hits are of this tree
   std::uint32_t first_ray;
@@ -55,28 +59,32 @@ class RayPacket {
   void MakeBeam(std::uint32_t active, double margin, RayBeam& beam) {
     const D d;
     const std::size_t n = hn::Lanes(d);
-    const V big = hn::Set(d, 3e38f);
     // The axis lies between the first and the last of the rays: opposite corners, when they come from a square of
     // pixels.
     const auto first = static_cast<std::size_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(active));
     const auto last = static_cast<std::size_t>(31 - hwy::Num0BitsAboveMS1Bit_Nonzero32(active));
     float squared_length = 0.0f;
     for (std::size_t c = 0; c < 3; ++c) {
-      V o_low = big, o_high = hn::Neg(big), v_low = big, v_high = hn::Neg(big);
+      V o_low, o_high, v_low, v_high;
       for (std::size_t i = 0; i < size; i += n) {
+        const V origins = hn::Load(d, lanes.origin[c] + i);
+        const V inverses = hn::Load(d, lanes.inverse[c] + i);
+        hn::Store(hn::Neg(hn::Mul(origins, inverses)), d, start[c] + i);
+        // Other lanes count as the first.
         const auto is_active = LanesOf(active, i);
-        const V o = hn::Load(d, lanes.origin[c] + i);
-        const V v = hn::Load(d, lanes.inverse[c] + i);
-        hn::Store(hn::Neg(hn::Mul(o, v)), d, start[c] + i);
-        o_low = hn::Min(o_low, hn::IfThenElse(is_active, o, big));
-        o_high = hn::Max(o_high, hn::IfThenElse(is_active, o, hn::Neg(big)));
-        v_low = hn::Min(v_low, hn::IfThenElse(is_active, v, big));
-        v_high = hn::Max(v_high, hn::IfThenElse(is_active, v, hn::Neg(big)));
+        const V o = hn::IfThenElse(is_active, origins, hn::Set(d, lanes.origin[c][first]));
+        const V v = hn::IfThenElse(is_active, inverses, hn::Set(d, lanes.inverse[c][first]));
+        o_low = i == 0 ? o : hn::Min(o_low, o);
+        o_high = i == 0 ? o : hn::Max(o_high, o);
+        v_low = i == 0 ? v : hn::Min(v_low, v);
+        v_high = i == 0 ? v : hn::Max(v_high, v);
       }
-      const float low = hn::GetLane(hn::MinOfLanes(d, o_low));
-      const float high = hn::GetLane(hn::MaxOfLanes(d, o_high));
-      const float slowest = hn::GetLane(hn::MinOfLanes(d, v_low));
-      const float fastest = hn::GetLane(hn::MaxOfLanes(d, v_high));
+      float least[4];
+      LeastOfFour(d, o_low, hn::Neg(o_high), v_low, hn::Neg(v_high), least);
+      const float low = least[0];
+      const float high = -least[1];
+      const float slowest = least[2];
+      const float fastest = -least[3];
       const bool is_up = slowest >= 0.0f;
       beam.near_inverse[c] = is_up ? slowest : fastest;
       beam.far_inverse[c] = is_up ? fastest : slowest;
@@ -91,6 +99,7 @@ class RayPacket {
     // Whatever the axis is, the bounds are measured from it. The factors cover the rounding of the measurement.
     V offsets = hn::Zero(d);
     V slopes = hn::Zero(d);
+    V begins_low, begins_high;
     for (std::size_t i = 0; i < size; i += n) {
       V offset = hn::Zero(d);
       V slope = hn::Zero(d);
@@ -100,11 +109,20 @@ class RayPacket {
         offset = hn::MulAdd(apart, apart, offset);
         slope = hn::MulAdd(turned, turned, slope);
       }
-      offsets = hn::Max(offsets, hn::IfThenElseZero(LanesOf(active, i), offset));
-      slopes = hn::Max(slopes, hn::IfThenElseZero(LanesOf(active, i), slope));
+      const auto is_active = LanesOf(active, i);
+      const V begins = hn::IfThenElse(is_active, hn::Load(d, lanes.t_low + i), hn::Set(d, lanes.t_low[first]));
+      offsets = hn::Max(offsets, hn::IfThenElseZero(is_active, offset));
+      slopes = hn::Max(slopes, hn::IfThenElseZero(is_active, slope));
+      begins_low = i == 0 ? begins : hn::Min(begins_low, begins);
+      begins_high = i == 0 ? begins : hn::Max(begins_high, begins);
     }
-    beam.start = std::sqrt(hn::GetLane(hn::MaxOfLanes(d, offsets))) * (1.0f + 1e-5f) + static_cast<float>(margin);
-    beam.growth = std::sqrt(hn::GetLane(hn::MaxOfLanes(d, slopes))) * (1.0f + 1e-5f);
+    float least[4];
+    LeastOfFour(d, hn::Neg(offsets), hn::Neg(slopes), begins_low, hn::Neg(begins_high), least);
+    beam.start = std::sqrt(-least[0]) * (1.0f + 1e-5f) + static_cast<float>(margin);
+    beam.growth = std::sqrt(-least[1]) * (1.0f + 1e-5f);
+    beam.begin = least[2];
+    const float apart = -least[3] - beam.begin;
+    beam.uncertain = apart + beam.growth * (std::abs(beam.begin) + apart);
     beam.stretch = 1.0f / (1.0f - beam.growth);
     if (beam.growth > 0.5f) {
       // Rays that go very different ways: everything is within their cone.
@@ -117,6 +135,30 @@ class RayPacket {
   using D = hn::CappedTag<float, size>;
   using V = hn::Vec<D>;
 
+  // The least lane of each of four vectors: together, for what is left of each is soon a part of a vector only.
+  static HWY_INLINE void LeastOfFour(D d, V v0, V v1, V v2, V v3, float (&least)[4]) {
+#if HWY_TARGET != HWY_SCALAR
+    if constexpr (hn::MaxLanes(D()) == 16) {
+      const V low = hn::Min(hn::ConcatLowerLower(d, v1, v0), hn::ConcatUpperUpper(d, v1, v0));
+      const V high = hn::Min(hn::ConcatLowerLower(d, v3, v2), hn::ConcatUpperUpper(d, v3, v2));
+      const V all = hn::Min(hn::OddEvenBlocks(hn::SwapAdjacentBlocks(high), low),
+                            hn::OddEvenBlocks(high, hn::SwapAdjacentBlocks(low)));
+      const V pairs = hn::Min(all, hn::Shuffle2301(all));
+      HWY_ALIGN float blocks[4][4];
+      hn::Store(hn::Min(pairs, hn::Shuffle1032(pairs)), d, blocks[0]);
+      least[0] = blocks[0][0];
+      least[1] = blocks[2][0];
+      least[2] = blocks[1][0];
+      least[3] = blocks[3][0];
+      return;
+    }
+#endif
+    least[0] = hn::GetLane(hn::MinOfLanes(d, v0));
+    least[1] = hn::GetLane(hn::MinOfLanes(d, v1));
+    least[2] = hn::GetLane(hn::MinOfLanes(d, v2));
+    least[3] = hn::GetLane(hn::MinOfLanes(d, v3));
+  }
+
   // The rays that go down axis c.
   std::uint32_t Negative(std::size_t c) const {
     const D d;
@@ -126,11 +168,11 @@ class RayPacket {
     return bits;
   }
 
-  static hn::Mask<D> LanesOf(std::uint32_t active, std::size_t first) {
-    const D d;
-    const hn::RebindToUnsigned<D> u;
-    const auto bits = hn::Shl(hn::Set(u, 1u), hn::Iota(u, static_cast<std::uint32_t>(first)));
-    return hn::RebindMask(d, hn::TestBit(hn::Set(u, active), bits));
+  static HWY_INLINE hn::Mask<D> LanesOf(std::uint32_t active, std::size_t first) {
+    const std::uint64_t bits = active >> first;
+    std::uint8_t bytes[sizeof bits];
+    std::memcpy(bytes, &bits, sizeof bits);
+    return hn::LoadMaskBits(D(), bytes);
   }
 };
 
@@ -143,10 +185,12 @@ class StreamPackets {
   static constexpr std::size_t most_octants = 8;
   static constexpr bool is_indirect = Positions::is_indirect;
 
-  StreamPackets(const PkdTree& tree, const Positions& positions, const TreeMargin& margin, std::size_t most_rays)
+  StreamPackets(const PkdTree& tree, const Positions& positions, const TreeMargin& margin, bool copied,
+                std::size_t most_rays)
       : tree_(tree),
         positions_(positions),
         margin_(margin),
+        copied_(copied),
         tests_(tree, margin.value),
         shrink_(static_cast<float>(2.0 * margin.value * (1.0 + 1e-3))),
         packets_(new RayPacket[(most_rays + size - 1) / size]),
@@ -212,11 +256,11 @@ class StreamPackets {
   static std::size_t KeepOpen(std::uint32_t*, std::size_t count) { return count; }
 
   HWY_INLINE void Prefetch(std::uint64_t begin, std::uint64_t end) const {
-    if (HWY_UNLIKELY(!tree_.selected.all())) return PrefetchDrawn(tree_, positions_, begin, end);
+    if (HWY_UNLIKELY(!tree_.selected.all())) return PrefetchDrawn(tree_, positions_, begin, end, copied_);
     positions_.prefetch_run(begin, end);
   }
   HWY_INLINE void PrefetchBehind(std::uint64_t begin, std::uint64_t end) const {
-    if (HWY_UNLIKELY(!tree_.selected.all())) return PrefetchDrawnBehind(tree_, positions_, begin, end);
+    if (HWY_UNLIKELY(!tree_.selected.all())) return PrefetchDrawnBehind(tree_, positions_, begin, end, copied_);
     PrefetchRunBehind(positions_, begin, end);
   }
 
@@ -235,7 +279,8 @@ class StreamPackets {
 
   // Not inlined: without a filter it is never called.
   HWY_NOINLINE void VisitFiltered(std::uint64_t begin, std::uint64_t end, std::uint32_t* list, std::size_t count) {
-    VisitDrawn(tree_, positions_, begin, end, [&](const auto& particles) HWY_ATTR { Visit(particles, list, count); });
+    VisitDrawn(tree_, positions_, begin, end, copied_,
+               [&](const auto& particles) HWY_ATTR { Visit(particles, list, count); });
   }
 
   template <class Particles>
@@ -244,35 +289,66 @@ class StreamPackets {
       RayBeam& beam = beams_[list[i]];
       RayPacket& packet = packets_[beam.packet];
       bool changed = false;
-      tests_.VisitWithinBeam(particles, beam, beam.latest,
-                             [&](std::uint64_t place, const float centre[3], float radius)
-                                 HWY_ATTR { changed |= VisitParticle(packet, place, centre, radius, beam.active); });
-      if (changed) UpdateLatest(beam);
+      tests_.VisitWithinBeam(
+          particles, beam,
+          [&](std::uint64_t place, const float centre[3], float radius)
+              HWY_ATTR { changed |= VisitParticle(packet, place, centre, radius, beam.active); },
+          [&]() HWY_ATTR {
+            if (changed) UpdateLatest(beam);
+            changed = false;
+          });
     }
   }
 
   // False: the rays come from too far away, and have been traced one by one.
   bool EnterPacket(RayPacket& packet, std::size_t first, std::size_t count) {
     packet.rays.Load(rays_ + first, count);
-    if (HWY_UNLIKELY(!margin_.Fits(packet.rays.Distance()))) {
+    if (HWY_UNLIKELY(!packet.rays.StartWithin(margin_.farthest))) {
       for (std::size_t i = first; i < first + count; ++i) {
-        FirstHitVisitor visitor(rays_[i], hits_[i]);
+        FirstHitVisitor visitor(rays_[i], hits_[i], is_own_hit(tree_, hits_[i]));
         TraverseTree(tree_, positions_, rays_[i], visitor);
       }
       return false;
     }
-    double t_limits[size];
-    for (std::size_t i = 0; i < count; ++i) t_limits[i] = std::min(packet.rays.t_max[i], hits_[first + i].t);
-    EnterTree(tree_, margin_, packet.rays, t_limits, count, true, packet.lanes);
+    NoteLimits(packet, hits_ + first, count);
+    EnterTree(tree_, margin_, packet.rays, packet.limit, true, packet.lanes);
     packet.first_ray = static_cast<std::uint32_t>(first);
     packet.noted = 0;
-    packet.here = 0;
-    for (std::size_t i = 0; i < size; ++i) {
-      packet.best_earliest[i] = i < count && MayNote(rays_[first + i]) ? packet.lanes.t_high[i] - shrink_
-                                                                       : -std::numeric_limits<float>::infinity();
-      packet.t_certain[i] = packet.lanes.t_low[i] + shrink_;
+    packet.here = HWY_UNLIKELY(tree_.continues) ? HitsHere(hits_ + first, count) : 0;
+    const D d;
+    const V shrink = hn::Set(d, shrink_);
+    const std::uint32_t may_note = MayNote(rays_ + first, count);
+    for (std::size_t i = 0; i < size; i += hn::Lanes(d)) {
+      const V earliest = hn::Sub(hn::Load(d, packet.lanes.t_high + i), shrink);
+      const V never = hn::Set(d, -std::numeric_limits<float>::infinity());
+      hn::Store(hn::IfThenElse(RayPacket::LanesOf(may_note, i), earliest, never), d, packet.best_earliest + i);
+      hn::Store(hn::Add(hn::Load(d, packet.lanes.t_low + i), shrink), d, packet.t_certain + i);
+      for (auto& centres : packet.best_centre) hn::Store(hn::Zero(d), d, centres + i);
     }
     return true;
+  }
+
+  HWY_NOINLINE std::uint32_t HitsHere(const Hit* hits, std::size_t count) const {
+    std::uint32_t lanes = 0;
+    for (std::size_t i = 0; i < count; ++i) lanes |= (is_own_hit(tree_, hits[i]) ? 1u : 0u) << i;
+    return lanes;
+  }
+
+  // Behind what has been hit already, nothing counts.
+  HWY_INLINE static void NoteLimits(RayPacket& packet, const Hit* hits, std::size_t count) {
+    static_assert(offsetof(Hit, t) == 0 && sizeof(Hit) == 2 * sizeof(double));
+    const hn::CappedTag<double, size> d;
+    if (HWY_LIKELY(count == size)) {
+      for (std::size_t i = 0; i < size; i += hn::Lanes(d)) {
+        hn::Vec<decltype(d)> t, item;
+        hn::LoadInterleaved2(d, reinterpret_cast<const double*>(hits + i), t, item);
+        hn::Store(hn::Min(t, hn::Load(d, packet.rays.t_max() + i)), d, packet.limit + i);
+      }
+      return;
+    }
+    for (std::size_t i = 0; i < size; ++i)
+      packet.limit[i] =
+          i < count ? std::min(packet.rays.t_max()[i], hits[i].t) : -std::numeric_limits<double>::infinity();
   }
 
   HWY_INLINE static std::uint32_t MeetBeam(const NodePlanes& planes, const RayBeam& beam) {
@@ -369,9 +445,15 @@ class StreamPackets {
       hn::BlendedStore(earliest, wins, d, packet.best_earliest + i);
       hn::BlendedStore(hn::Set(u, static_cast<std::uint32_t>(place)), hn::RebindMask(u, wins), u,
                        packet.best_place + i);
+      if constexpr (Positions::is_exact_in_f32) {
+        hn::BlendedStore(cx, wins, d, packet.best_centre[0] + i);
+        hn::BlendedStore(cy, wins, d, packet.best_centre[1] + i);
+        hn::BlendedStore(cz, wins, d, packet.best_centre[2] + i);
+      }
       const std::uint32_t noted = MaskBits(d, wins) << i;
       packet.noted |= noted;
-      if (HWY_UNLIKELY(tree_.copies.exist()) && noted != 0) positions_.prefetch(place);  // confirmed at the end
+      if (!Positions::is_exact_in_f32 && HWY_UNLIKELY(tree_.copies.exist()) && noted != 0)
+        positions_.prefetch(place);  // confirmed at the end
       nearer = true;
       for (std::uint32_t open = MaskBits(d, possible) << i & ~noted; open != 0; open &= open - 1) {
         const std::size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(open);
@@ -383,63 +465,90 @@ class StreamPackets {
   }
 
   // Whether a candidate is the excluded item is left to the confirmation; places are noted in 32 bits.
-  bool MayNote(const Ray& ray) const { return ray.exclude == no_item && tree_.count <= most_noted; }
+  HWY_INLINE std::uint32_t MayNote(const Ray* rays, std::size_t count) const {
+    if (HWY_UNLIKELY(tree_.count > most_noted)) return 0;
+    std::uint64_t all = no_item;  // all bits are set
+    for (std::size_t i = 0; i < count; ++i) all &= rays[i].exclude;
+    std::uint32_t lanes = (std::uint32_t{1} << count) - 1;
+    if (HWY_UNLIKELY(all != no_item))
+      for (std::size_t i = 0; i < count; ++i)
+        if (rays[i].exclude != no_item) lanes &= ~(1u << i);
+    return lanes;
+  }
 
   void Confirm(RayPacket& packet, std::size_t lane, std::uint64_t place) {
     const Ray& ray = rays_[packet.first_ray + lane];
     FirstHitVisitor visitor(ray, hits_[packet.first_ray + lane], (packet.here >> lane & 1) != 0);
     visitor.visit(tree_, positions_, place, ray);
     packet.here |= (visitor.is_here() ? 1u : 0u) << lane;
+    packet.limit[lane] = visitor.t_limit();
     const double t = visitor.t_limit() - packet.lanes.t_shift[lane];
     packet.lanes.t_high[lane] = std::min(packet.lanes.t_high[lane], static_cast<float>(t + margin_.value));
-    if (MayNote(ray)) packet.best_earliest[lane] = static_cast<float>(t - margin_.value);
+    if (MayNote(&ray, 1) != 0) packet.best_earliest[lane] = static_cast<float>(t - margin_.value);
   }
+  // All that is noted, with the operations of sphere_first_hit() in their order.
   HWY_INLINE void ConfirmAllNoted(const RayPacket& packet) {
     const hn::CappedTag<double, size> d;
+    const hn::Rebind<float, decltype(d)> f;
     using W = hn::Vec<decltype(d)>;
-    HWY_ALIGN double centre[3][size] = {};
-    HWY_ALIGN double radius[size] = {};
+    HWY_ALIGN double centre[3][size];
+    HWY_ALIGN double radius[size];
     HWY_ALIGN double t[size];
-    std::uint64_t items[size];
-    for (std::uint32_t left = packet.noted; left != 0; left &= left - 1) {
-      const std::size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(left);
-      const std::uint64_t place = packet.best_place[lane];
-      double at[3];
-      positions_.centre(place, at);
-      for (std::size_t c = 0; c < 3; ++c) centre[c][lane] = at[c];
-      items[lane] = tree_.item(place);
-      radius[lane] = tree_.radius.value(items[lane]);
+    const bool uniform = tree_.radius.kind == RadiusView::Kind::uniform;
+    if (!Positions::is_exact_in_f32 || !uniform) {
+      for (std::size_t lane = 0; lane < size; ++lane) {
+        const std::uint64_t place = packet.best_place[(packet.noted >> lane & 1) != 0 ? lane : first_of(packet.noted)];
+        double at[3];
+        if (!Positions::is_exact_in_f32) positions_.centre(place, at);
+        for (std::size_t c = 0; c < 3; ++c) centre[c][lane] = at[c];
+        radius[lane] = tree_.radius.value(tree_.item(place));
+      }
     }
+    const auto centres = [&](std::size_t c, std::size_t i) HWY_ATTR {
+      if constexpr (Positions::is_exact_in_f32) return hn::PromoteTo(d, hn::Load(f, packet.best_centre[c] + i));
+      return hn::Load(d, centre[c] + i);
+    };
+    const W never = hn::Set(d, std::numeric_limits<double>::infinity());
+    std::uint32_t nearer = 0;
+    std::uint32_t equal = 0;
     for (std::size_t i = 0; i < size; i += hn::Lanes(d)) {
-      const W dx = hn::Load(d, packet.rays.direction[0] + i);
-      const W dy = hn::Load(d, packet.rays.direction[1] + i);
-      const W dz = hn::Load(d, packet.rays.direction[2] + i);
-      const W fx = hn::Sub(hn::Load(d, packet.rays.origin[0] + i), hn::Load(d, centre[0] + i));
-      const W fy = hn::Sub(hn::Load(d, packet.rays.origin[1] + i), hn::Load(d, centre[1] + i));
-      const W fz = hn::Sub(hn::Load(d, packet.rays.origin[2] + i), hn::Load(d, centre[2] + i));
+      const W dx = hn::Load(d, packet.rays.direction(0) + i);
+      const W dy = hn::Load(d, packet.rays.direction(1) + i);
+      const W dz = hn::Load(d, packet.rays.direction(2) + i);
+      const W fx = hn::Sub(hn::Load(d, packet.rays.origin(0) + i), centres(0, i));
+      const W fy = hn::Sub(hn::Load(d, packet.rays.origin(1) + i), centres(1, i));
+      const W fz = hn::Sub(hn::Load(d, packet.rays.origin(2) + i), centres(2, i));
       const W b = hn::Neg(hn::Add(hn::Add(hn::Mul(fx, dx), hn::Mul(fy, dy)), hn::Mul(fz, dz)));
       const W px = hn::Add(fx, hn::Mul(b, dx));
       const W py = hn::Add(fy, hn::Mul(b, dy));
       const W pz = hn::Add(fz, hn::Mul(b, dz));
-      const W r = hn::Load(d, radius + i);
+      const W r = uniform ? hn::Set(d, tree_.radius.uniform) : hn::Load(d, radius + i);
       const W discriminant =
           hn::Sub(hn::Mul(r, r), hn::Add(hn::Add(hn::Mul(px, px), hn::Mul(py, py)), hn::Mul(pz, pz)));
       const W s = hn::Sqrt(discriminant);
       const W enter = hn::Sub(b, s);
       const W leave = hn::Add(b, s);
-      const W t_min = hn::Load(d, packet.rays.t_min + i);
-      const W never = hn::Set(d, std::numeric_limits<double>::infinity());
+      const W t_min = hn::Load(d, packet.rays.t_min() + i);
       const W later = hn::IfThenElse(hn::Gt(leave, t_min), leave, never);
       const W first = hn::IfThenElse(hn::Gt(enter, t_min), enter, later);
-      hn::Store(hn::IfThenElse(hn::Ge(discriminant, hn::Zero(d)), first, never), d, t + i);
+      const W at = hn::IfThenElse(hn::Ge(discriminant, hn::Zero(d)), first, never);
+      const W limit = hn::Load(d, packet.limit + i);
+      hn::Store(at, d, t + i);
+      nearer |= MaskBits(d, hn::Lt(at, limit)) << i;
+      equal |= MaskBits(d, hn::And(hn::Eq(at, limit), hn::Lt(at, never))) << i;
     }
-    for (std::uint32_t left = packet.noted; left != 0; left &= left - 1) {
-      const std::size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(left);
-      const std::size_t ray = packet.first_ray + lane;
-      if (t[lane] != std::numeric_limits<double>::infinity())
-        FirstHitVisitor(rays_[ray], hits_[ray], (packet.here >> lane & 1) != 0).offer(tree_, items[lane], t[lane]);
+    Hit* const hits = hits_ + packet.first_ray;
+    for (std::uint32_t left = nearer & packet.noted; left != 0; left &= left - 1) {
+      const std::size_t lane = first_of(left);
+      hits[lane] = {t[lane], tree_.item(packet.best_place[lane])};
+    }
+    for (std::uint32_t left = equal & packet.noted; HWY_UNLIKELY(left != 0); left &= left - 1) {
+      const std::size_t lane = first_of(left);
+      FirstHitVisitor(rays_[packet.first_ray + lane], hits[lane], (packet.here >> lane & 1) != 0)
+          .offer(tree_, tree_.item(packet.best_place[lane]), t[lane]);
     }
   }
+  static HWY_INLINE std::size_t first_of(std::uint32_t lanes) { return hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes); }
 
   void ConfirmNoted(RayPacket& packet, std::size_t lane) {
     if ((packet.noted >> lane & 1) == 0) return;
@@ -450,6 +559,7 @@ class StreamPackets {
   const PkdTree& tree_;
   const Positions& positions_;
   const TreeMargin& margin_;
+  const bool copied_;  // the leaves of the walk are runs of copies
   const ParticleTests tests_;
   const float shrink_;  // two margins
   const Ray* rays_ = nullptr;
@@ -467,7 +577,8 @@ class FirstHitStream {
  public:
   FirstHitStream(const PkdTree& tree, const Positions& positions, const Nodes& nodes, const TreeMargin& margin,
                  std::size_t most_rays)
-      : packets_(tree, positions, margin, most_rays), walks_(nodes, packets_, 8 * most_rays / 16 + 8) {}
+      : packets_(tree, positions, margin, nodes.are_copied(), most_rays),
+        walks_(nodes, packets_, 8 * most_rays / 16 + 8) {}
 
   // rays[0 .. count), at most longest_packet_stream.
   void Run(const Ray* rays, Hit* hits, std::size_t count) {

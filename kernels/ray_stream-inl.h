@@ -27,10 +27,12 @@ class StreamRays {
   static constexpr std::uint8_t no_octant = 8;
   static constexpr bool is_indirect = Positions::is_indirect;
 
-  StreamRays(const PkdTree& tree, const Positions& positions, const TreeMargin& margin, std::size_t most_rays)
+  StreamRays(const PkdTree& tree, const Positions& positions, const TreeMargin& margin, bool copied,
+             std::size_t most_rays)
       : tree_(tree),
         positions_(positions),
         margin_(margin),
+        copied_(copied),
         tests_(tree, margin.value),
         rays_(new WalkRay[most_rays]) {}
 
@@ -58,11 +60,11 @@ class StreamRays {
   }
 
   HWY_INLINE void Prefetch(std::uint64_t begin, std::uint64_t end) const {
-    if (HWY_UNLIKELY(!tree_.selected.all())) return PrefetchDrawn(tree_, positions_, begin, end);
+    if (HWY_UNLIKELY(!tree_.selected.all())) return PrefetchDrawn(tree_, positions_, begin, end, copied_);
     positions_.prefetch_run(begin, end);
   }
   HWY_INLINE void PrefetchBehind(std::uint64_t begin, std::uint64_t end) const {
-    if (HWY_UNLIKELY(!tree_.selected.all())) return PrefetchDrawnBehind(tree_, positions_, begin, end);
+    if (HWY_UNLIKELY(!tree_.selected.all())) return PrefetchDrawnBehind(tree_, positions_, begin, end, copied_);
     PrefetchRunBehind(positions_, begin, end);
   }
 
@@ -77,7 +79,8 @@ class StreamRays {
  private:
   // Not inlined: without a filter it is never called.
   HWY_NOINLINE void VisitFiltered(std::uint64_t begin, std::uint64_t end, std::uint32_t* list, std::size_t count) {
-    VisitDrawn(tree_, positions_, begin, end, [&](const auto& particles) HWY_ATTR { Visit(particles, list, count); });
+    VisitDrawn(tree_, positions_, begin, end, copied_,
+               [&](const auto& particles) HWY_ATTR { Visit(particles, list, count); });
   }
 
   template <class Particles>
@@ -90,20 +93,28 @@ class StreamRays {
   }
 
   void EnterSome(std::size_t first, std::size_t count, std::uint8_t* octants) {
-    double t_limits[EnteredRays::size];
-    for (std::size_t i = 0; i < count; ++i) {
-      const Ray& ray = source_[first + i];
-      const bool is_left = occluded_[first + i] == 0;
-      t_limits[i] = is_left ? ray.t_max : -std::numeric_limits<double>::infinity();
-      if (is_left && HWY_UNLIKELY(!margin_.Fits(ray))) {
+    constexpr double never = -std::numeric_limits<double>::infinity();
+    if (std::find(occluded_ + first, occluded_ + first + count, 0) == occluded_ + first + count) {
+      std::fill_n(octants, count, no_octant);
+      return;
+    }
+    RayColumns columns;
+    columns.Load(source_ + first, count);
+    HWY_ALIGN double t_limits[EnteredRays::size];
+    for (std::size_t i = 0; i < EnteredRays::size; ++i)
+      t_limits[i] = i < count && occluded_[first + i] == 0 ? columns.t_max()[i] : never;
+    if (HWY_UNLIKELY(!columns.StartWithin(margin_.farthest))) {
+      for (std::size_t i = 0; i < count; ++i) {
+        const Ray& ray = source_[first + i];
+        if (occluded_[first + i] != 0 || margin_.Fits(ray)) continue;
         AnyHitVisitor visitor(ray);
         TraverseTree(tree_, positions_, ray, visitor);
         occluded_[first + i] = visitor.found ? 1 : 0;
-        t_limits[i] = -std::numeric_limits<double>::infinity();
+        t_limits[i] = never;
       }
     }
     EnteredRays entered;
-    EnterTree(tree_, margin_, source_ + first, t_limits, count, false, entered);
+    EnterTree(tree_, margin_, columns, t_limits, false, entered);
     for (std::size_t i = 0; i < count; ++i) {
       WalkRay& ray = rays_[first + i];
       int octant = 0;
@@ -152,6 +163,7 @@ class StreamRays {
   const PkdTree& tree_;
   const Positions& positions_;
   const TreeMargin& margin_;
+  const bool copied_;  // the leaves of the walk are runs of copies
   const ParticleTests tests_;
   const Ray* source_ = nullptr;
   std::uint8_t* occluded_ = nullptr;
@@ -164,20 +176,21 @@ class AnyHitStream {
  public:
   AnyHitStream(const PkdTree& tree, const Positions& positions, const Nodes& nodes, const TreeMargin& margin,
                std::size_t most_rays)
-      : rays_(tree, positions, margin, most_rays), walks_(nodes, rays_, most_rays) {}
+      : rays_(tree, positions, margin, nodes.are_copied(), most_rays), walks_(nodes, rays_, most_rays) {}
 
   // Traces rays[0 .. count), at most longest_stream: a walk per octant.
   void Run(const Ray* rays, std::uint8_t* occluded, std::size_t count) {
+    constexpr std::size_t octants_and_none = StreamRays<Positions>::no_octant + 1;
     std::uint8_t octants[longest_stream];
-    std::size_t sizes[9] = {};
+    std::size_t sizes[octants_and_none] = {};
     rays_.Enter(rays, occluded, count, octants);
     for (std::size_t i = 0; i < count; ++i) ++sizes[octants[i]];
-    for (std::uint32_t octant = 0; octant < 8; ++octant) {
-      if (sizes[octant] == 0) continue;
-      std::uint32_t* list = walks_.Add(octant, sizes[octant]);
-      for (std::size_t i = 0; i < count; ++i)
-        if (octants[i] == octant) *list++ = static_cast<std::uint32_t>(i);
-    }
+    std::uint32_t nowhere[longest_stream];
+    std::uint32_t* lists[octants_and_none];
+    lists[StreamRays<Positions>::no_octant] = nowhere;
+    for (std::uint32_t octant = 0; octant < StreamRays<Positions>::no_octant; ++octant)
+      lists[octant] = sizes[octant] != 0 ? walks_.Add(octant, sizes[octant]) : nullptr;
+    for (std::size_t i = 0; i < count; ++i) *lists[octants[i]]++ = static_cast<std::uint32_t>(i);
     walks_.Run();
   }
 

@@ -35,12 +35,17 @@ class TreeletNodes {
   };
 
   TreeletNodes(const PkdTree& tree, const Treelets& treelets)
-      : treelets_(treelets), places_(tree.count), is_filtered_(!tree.selected.all()) {}
+      : treelets_(treelets), places_(tree.count), is_filtered_(!tree.selected.all()), before_(tree.copies.before) {}
 
   unsigned levels() const { return treelets_.levels; }
   Place Root() const { return {treelets_.root(), 0}; }
-  std::uint64_t Begin(const Place& place) const { return place.run.begin; }
-  std::uint64_t End(const Place& place) const { return std::min(place.run.begin + place.run.span, places_); }
+  bool are_copied() const { return before_ != nullptr; }
+  HWY_INLINE std::uint64_t Begin(const Place& place) const {
+    return HWY_UNLIKELY(are_copied()) ? before_[place.node] : place.run.begin;
+  }
+  HWY_INLINE std::uint64_t End(const Place& place) const {
+    return HWY_UNLIKELY(are_copied()) ? before_[place.node + 1] : std::min(place.run.begin + place.run.span, places_);
+  }
 
   HWY_INLINE void Prefetch(const Place& place, unsigned level) const {
     prefetch_line(treelets_.nodes + treelets_.level_begin[level] + place.node);
@@ -90,6 +95,7 @@ class TreeletNodes {
   const Treelets& treelets_;
   std::uint64_t places_;
   bool is_filtered_;
+  const std::uint32_t* before_;  // copies before those of a treelet; or null
 };
 
 }  // namespace insitu::kernels::HWY_NAMESPACE

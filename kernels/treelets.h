@@ -69,6 +69,17 @@ struct Treelets {
   }
   std::uint64_t node_count() const { return exist() ? level_begin[levels - 1] + nodes_at(levels - 1) : 0; }
   TreeletRun root() const { return {0, particles + 1}; }
+  // The places of a node: the digits of `index` to the base of eight are the way to it.
+  TreeletRun run_of_node(unsigned level, std::uint64_t index) const {
+    TreeletRun run = root();
+    for (unsigned above = 0; above < level; ++above)
+      run = child_run(run, bits_at(above), static_cast<unsigned>(index >> (3 * (level - 1 - above)) & 7));
+    return run;
+  }
+  TreeletRun run_of_treelet(std::uint64_t number) const {
+    const unsigned bits = bits_at(levels - 1);
+    return child_run(run_of_node(levels - 1, number >> bits), bits, static_cast<unsigned>(number & ((1u << bits) - 1)));
+  }
 };
 
 }  // namespace insitu::kernels

@@ -44,7 +44,7 @@ HWY_INLINE std::size_t ListChild(const std::uint32_t* HWY_RESTRICT items, const 
 //   Place Root(), levels()                            leaves stand at level levels()
 //   Open(place, level, octant, node, planes, inner)   the boxes of the children, and the particles of no child
 //   Child(node, k), Filled(node), Flip(node)
-//   Begin(place), End(place)                          of a leaf
+//   Begin(place), End(place)                          of a leaf: places, or numbers of copies when are_copied()
 //   Prefetch(place, level), PrefetchBehind(...)       what Open will read; the second where that takes two reads
 // Items:
 //   uint32 Meet(planes, item, is_last)                children met, a bit each; is_last: they are leaves

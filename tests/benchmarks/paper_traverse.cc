@@ -42,7 +42,8 @@ HWY_NOINLINE void WalkInDouble(const PkdTree& tree, const Positions& positions, 
     SingleWalk<Nodes, double, Visitor>(tree, positions, nodes, 0.0, exact, ray, visitor).Run(t_enter, t_leave);
 }
 
-// Up to 16 rays. visitors[i] of those with limits[i] below their t_min are not asked.
+// Up to 16 rays, and 16 limits: minus infinity for those without a ray. visitors[i] of those with limits[i] below their
+// t_min are not asked.
 template <class Nodes, class Visitor>
 HWY_INLINE void TraceSome(const PaperView& view, const Positions& positions, const Nodes& nodes,
                           const TreeMargin& margin, const Ray* rays, Visitor* visitors, double* limits,
@@ -52,14 +53,16 @@ HWY_INLINE void TraceSome(const PaperView& view, const Positions& positions, con
     WalkInDouble(view.tree, positions, nodes, rays[i], visitors[i]);
     limits[i] = -std::numeric_limits<double>::infinity();
   }
+  in::RayColumns columns;
+  columns.Load(rays, count);
   if (view.way == RayWay::packet) {
     in::PaperPacket packet;
-    packet.Load(view.tree, margin, rays, count, limits);
+    packet.Load(view.tree, margin, columns, limits);
     PacketWalk<Nodes, Visitor>(view.tree, positions, nodes, rays, packet, visitors).Run();
     return;
   }
   in::EnteredRays entered;
-  in::EnterTree(view.tree, margin, rays, limits, count, false, entered);
+  in::EnterTree(view.tree, margin, columns, limits, false, entered);
   for (std::size_t i = 0; i < count; ++i) {
     if (!entered.is_inside(i)) continue;
     PaperRay<float> ray;
@@ -67,15 +70,21 @@ HWY_INLINE void TraceSome(const PaperView& view, const Positions& positions, con
       ray.origin[c] = entered.origin[c][i];
       ray.direction[c] = entered.direction[c][i];
       ray.inverse[c] = entered.inverse[c][i];
-      ray.widening[c] = entered.widening[c][i];
+      ray.widening[c] = in::WideningOf(view.tree, margin) * std::abs(ray.inverse[c]);
     }
     ray.t_low = entered.t_low[i];
     ray.t_high = entered.t_high[i];
     ray.t_shift = entered.t_shift[i];
     SingleWalk<Nodes, float, Visitor>(view.tree, positions, nodes, margin.value, rays[i], ray, visitors[i])
-        .Run(entered.t_enter[i], ray.t_high);
+        .Run(0.0f, ray.t_high);
   }
 }
+
+// None yet.
+struct PacketLimits {
+  HWY_ALIGN double t[in::packet_size];
+  PacketLimits() { std::fill(std::begin(t), std::end(t), -std::numeric_limits<double>::infinity()); }
+};
 
 template <class Nodes>
 void FirstHitsIn(const PaperView& view, const Ray* rays, Hit* hits, std::size_t count) {
@@ -85,12 +94,12 @@ void FirstHitsIn(const PaperView& view, const Ray* rays, Hit* hits, std::size_t 
   for (std::size_t begin = 0; begin < count; begin += in::packet_size) {
     const std::size_t n = std::min(in::packet_size, count - begin);
     FirstHitVisitor visitors[in::packet_size];
-    double limits[in::packet_size];
+    PacketLimits limits;
     for (std::size_t i = 0; i < n; ++i) {
-      visitors[i] = FirstHitVisitor(rays[begin + i], hits[begin + i]);
-      limits[i] = visitors[i].t_limit();
+      visitors[i] = FirstHitVisitor(rays[begin + i], hits[begin + i], false);
+      limits.t[i] = visitors[i].t_limit();
     }
-    TraceSome(view, positions, nodes, margin, rays + begin, visitors, limits, n);
+    TraceSome(view, positions, nodes, margin, rays + begin, visitors, limits.t, n);
   }
 }
 
@@ -102,12 +111,12 @@ void AnyHitsIn(const PaperView& view, const Ray* rays, std::uint8_t* occluded, s
   for (std::size_t begin = 0; begin < count; begin += in::packet_size) {
     const std::size_t n = std::min(in::packet_size, count - begin);
     AnyHitVisitor visitors[in::packet_size];
-    double limits[in::packet_size];
+    PacketLimits limits;
     for (std::size_t i = 0; i < n; ++i) {
       visitors[i] = AnyHitVisitor(rays[begin + i]);
-      limits[i] = occluded[begin + i] == 0 ? rays[begin + i].t_max : -std::numeric_limits<double>::infinity();
+      limits.t[i] = occluded[begin + i] == 0 ? rays[begin + i].t_max : -std::numeric_limits<double>::infinity();
     }
-    TraceSome(view, positions, nodes, margin, rays + begin, visitors, limits, n);
+    TraceSome(view, positions, nodes, margin, rays + begin, visitors, limits.t, n);
     for (std::size_t i = 0; i < n; ++i)
       if (visitors[i].found) occluded[begin + i] = 1;
   }

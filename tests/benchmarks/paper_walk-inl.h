@@ -210,7 +210,7 @@ class PacketWalk {
     Subtree stack[64];
     Subtree now;
     now.node = nodes_.Root();
-    std::memcpy(now.t_enter, packet_.t_enter(), sizeof now.t_enter);
+    std::fill(std::begin(now.t_enter), std::end(now.t_enter), 0.0f);  // distances count from the nearest entry
     std::memcpy(now.t_leave, packet_.t_high(), sizeof now.t_leave);
     std::uint32_t active = ActiveLanes(now);
     int height = 0;

@@ -3,15 +3,17 @@
 
 #include "core/budget.h"
 #include "kernels/pkd_tree.h"
+#include "kernels/treelets.h"
 
 namespace insitu {
 
 class ParticleCopies {
  public:
-  // Of `drawn` particles of a tree with so many places. 0: there cannot be copies of so many places.
-  static std::uint64_t bytes_for(std::uint64_t places, std::uint64_t drawn);
-  // Of tree.selected, which leaves `drawn`. Throws Error(over_budget).
-  void build(Budget& budget, const kernels::PkdTree& tree, std::uint64_t drawn);
+  // Of `drawn` particles of a tree, in the treelets that it has. 0: there cannot be copies of so many places.
+  static std::uint64_t bytes_for(const kernels::Treelets& treelets, std::uint64_t drawn);
+  // Of tree.selected, which leaves `drawn`. With as many threads as the caller's TBB arena has. Throws
+  // Error(over_budget).
+  void build(Budget& budget, const kernels::PkdTree& tree, const kernels::Treelets& treelets, std::uint64_t drawn);
   void clear();
 
   const kernels::SelectedCopies& view() const { return view_; }

@@ -37,9 +37,9 @@ void Particles::apply_filter(Budget& budget) {
 
 void Particles::add_copies(Budget& budget, std::uint64_t room) {
   if (tree_.selected.thinning == 0) return;
-  const std::uint64_t bytes = ParticleCopies::bytes_for(tree_.count, shown_.drawn);
+  const std::uint64_t bytes = ParticleCopies::bytes_for(treelets_, shown_.drawn);
   if (bytes == 0 || bytes > room) return;
-  copies_.build(budget, tree_, shown_.drawn);
+  copies_.build(budget, tree_, treelets_, shown_.drawn);
   tree_.copies = copies_.view();
 }
 

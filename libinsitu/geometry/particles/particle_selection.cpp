@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <vector>
 
 #include "core/float_environment.h"
 #include "kernels/pkd_positions.h"
@@ -125,6 +126,7 @@ void ParticleSelection::build(Budget& budget, const PkdTree& tree, const Particl
     }
   }
   for (unsigned l = 0; l < levels; ++l) places_.level[l] = words + begin[l];
+  places_in_tree_ = tree.count;
   places_.thinning = thinning_of(tree.count);
 }
 
@@ -135,6 +137,20 @@ unsigned ParticleSelection::thinning_of(std::uint64_t count) const {
   unsigned thinning = 0;
   while (blocks != 0 && found_.drawn << (thinning + 1) <= FilterBlock::most * blocks) ++thinning;
   return thinning;
+}
+
+double ParticleSelection::run_length_for(double wanted) const {
+  std::vector<bool> any(SelectedPlaces::words(places_in_tree_));
+  for (std::size_t k = 0; k < any.size(); ++k) any[k] = places_.level[0][k] != 0;
+  double length = FilterBlock::most;
+  for (;; length *= 2.0) {
+    // What a run has that has any; of one twice as long it may be more.
+    const auto runs = static_cast<double>(std::count(any.begin(), any.end(), true));
+    const double held = static_cast<double>(found_.drawn) / std::max(runs, 1.0);
+    if (2.0 * held > wanted || any.size() <= 1) return length * wanted / std::max(held, 1.0);
+    for (std::size_t k = 0; 2 * k < any.size(); ++k) any[k] = any[2 * k] || (2 * k + 1 < any.size() && any[2 * k + 1]);
+    any.resize((any.size() + 1) / 2);
+  }
 }
 
 void ParticleSelection::clear() {

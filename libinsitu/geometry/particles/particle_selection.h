@@ -25,12 +25,15 @@ class ParticleSelection {
   const kernels::SelectedPlaces& places() const { return places_; }
   const ScanResult& found() const { return found_; }
   std::uint64_t bytes() const { return words_.bytes(); }
+  // Of runs of so many places those that have any drawn particle have `wanted` on average. After build().
+  double run_length_for(double wanted) const;
 
  private:
   unsigned thinning_of(std::uint64_t count) const;
 
   BudgetVector<std::uint64_t> words_;  // all levels, one after another
   kernels::SelectedPlaces places_;
+  std::uint64_t places_in_tree_ = 0;
   ScanResult found_ = nothing_found();
 };
 

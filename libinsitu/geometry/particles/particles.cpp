@@ -191,7 +191,7 @@ void Particles::add_treelets(Budget& budget) {
   const std::uint64_t room = treelet_room(budget);
   treelets_ = {};
   if (size_classes_.build(budget, tree_, bound_filter(), size_limit_, room)) return treelet_nodes_.clear();
-  const double most = std::ldexp(most_per_treelet, static_cast<int>(tree_.selected.thinning));
+  const double most = tree_.selected.all() ? most_per_treelet : selection_.run_length_for(most_per_treelet);
   treelets_ = treelet_shape(tree_.count, treelet_depth(tree_.count, most, room));
   if (!treelets_.exist()) return treelet_nodes_.clear();
   treelet_nodes_.reset(budget, treelets_.node_count(), "the treelets of the particles");

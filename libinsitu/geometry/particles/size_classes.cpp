@@ -78,17 +78,16 @@ bool SizeClasses::Class::add_treelets(Budget& budget, std::uint64_t most_bytes) 
   tree.selected = selection.places();
   tree.radius_max = selection.found().radius_max;
   if (selection.found().radius_min == tree.radius_max) tree.radius = kernels::uniform_radius(tree.radius_max);
-  const unsigned thinning = tree.selected.thinning;
-  const double longest = std::ldexp(most_per_treelet, static_cast<int>(thinning));
+  const double longest = selection.run_length_for(most_per_treelet);
   treelets = treelet_shape(tree.count, treelet_depth(tree.count, longest, most_bytes));
   if (!treelets.exist()) return false;
   nodes.reset(budget, treelets.node_count(), "the treelets of the particles");
   build_treelets(tree, treelets, nodes.data());
   treelets.nodes = nodes.data();
-  if (thinning == 0) return true;
-  const std::uint64_t bytes = ParticleCopies::bytes_for(tree.count, selection.found().drawn);
+  if (tree.selected.thinning == 0) return true;
+  const std::uint64_t bytes = ParticleCopies::bytes_for(treelets, selection.found().drawn);
   if (bytes == 0 || nodes.bytes() + bytes > most_bytes) return true;
-  copies.build(budget, tree, selection.found().drawn);
+  copies.build(budget, tree, treelets, selection.found().drawn);
   tree.copies = copies.view();
   return true;
 }
@@ -100,6 +99,7 @@ bool SizeClasses::build(Budget& budget, const PkdTree& tree, const BoundFilter* 
   if (2 * ParticleSelection::bytes_for(tree.count) > most_bytes) return false;
   const auto select = [&](Class& one, bool large) {
     one.tree = tree;
+    one.tree.continues = !large;
     one.tree.selected = {};
     one.tree.copies = {};
     one.selection.build(budget, one.tree, [&](const FilterBlock& block) {
@@ -124,27 +124,15 @@ void SizeClasses::clear() {
 }
 
 void SizeClasses::first_hits(const Ray* rays, Hit* hits, std::size_t count) const {
-  Ray nearer[batch];
-  Hit large[batch];
-  Hit small[batch];
+  Hit own[batch];
   for (std::size_t begin = 0; begin < count; begin += batch) {
     const std::size_t n = std::min(batch, count - begin);
-    for (std::size_t i = 0; i < n; ++i) {
-      nearer[i] = rays[begin + i];
-      nearer[i].t_max = std::min(nearer[i].t_max, hits[begin + i].t);
-    }
-    std::fill_n(large, n, Hit{});
-    kernels::treelet_first_hits(large_.tree, large_.treelets, nearer, large, n);
-    for (std::size_t i = 0; i < n; ++i) nearer[i].t_max = std::min(nearer[i].t_max, large[i].t);
-    std::fill_n(small, n, Hit{});
-    kernels::treelet_first_hits(small_.tree, small_.treelets, nearer, small, n);
-    for (std::size_t i = 0; i < n; ++i) {
-      const bool is_small =
-          small[i].found() &&
-          (small[i].t < large[i].t || small_.tree.prefer(small_.tree.prefer_context, small[i].item, large[i].item));
-      const Hit& hit = is_small ? small[i] : large[i];
-      if (hit.found() && hit.t < hits[begin + i].t) hits[begin + i] = hit;
-    }
+    // What has been hit before is a limit only: of hits at its distance it is the one that stays.
+    for (std::size_t i = 0; i < n; ++i) own[i] = {hits[begin + i].t, kernels::no_item};
+    kernels::treelet_first_hits(large_.tree, large_.treelets, rays + begin, own, n);
+    kernels::treelet_first_hits(small_.tree, small_.treelets, rays + begin, own, n);
+    for (std::size_t i = 0; i < n; ++i)
+      if (own[i].found()) hits[begin + i] = own[i];
   }
 }
 

@@ -39,16 +39,6 @@ struct Box {
   }
 };
 
-// The places of node `index` of `level`: its digits to the base of eight are the way to it.
-TreeletRun run_of_node(const Treelets& shape, unsigned level, std::uint64_t index) {
-  TreeletRun run = shape.root();
-  for (unsigned above = 0; above < level; ++above) {
-    const auto child = static_cast<unsigned>(index >> (3 * (level - 1 - above)) & 7);
-    run = child_run(run, shape.bits_at(above), child);
-  }
-  return run;
-}
-
 // Calls action(place) for every place of the run that is drawn.
 template <class Action>
 void each_drawn(const PkdTree& tree, std::uint64_t begin, std::uint64_t end, const Action& action) {
@@ -167,7 +157,7 @@ void build(const PkdTree& tree, const Treelets& shape, TreeletNode* nodes) {
   const unsigned last = shape.levels - 1;
   std::vector<Box> boxes(shape.nodes_at(last));
   for_nodes(boxes.size(), [&](std::uint64_t index) {
-    const TreeletRun run = run_of_node(shape, last, index);
+    const TreeletRun run = shape.run_of_node(last, index);
     const unsigned bits = shape.bits_at(last);
     Box children[node_fanout];
     for (unsigned k = 0; k < 1u << bits; ++k)

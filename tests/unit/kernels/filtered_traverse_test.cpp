@@ -64,12 +64,10 @@ void check_reference(const kernels::PkdTree& filtered, const std::vector<bool>& 
   }
 }
 
-// Leaves are longer in three cases of four, and centres are copied in every other.
+// Leaves are longer in three cases of four.
 kernels::PkdTree filtered(kernels::PkdTree tree, const TestSelection& selection, std::uint64_t seed) {
   tree.selected = selection.places();
-  const std::uint64_t turn = seed + seed / 8;  // tests run through kinds of selections in turns of eight, too
-  tree.selected.thinning = static_cast<unsigned>(turn % 4);
-  if (turn / 4 % 2 == 0) tree.copies = selection.copies();
+  tree.selected.thinning = static_cast<unsigned>((seed + seed / 8) % 4);  // tests run through selections in eights
   return tree;
 }
 
@@ -77,11 +75,10 @@ HitCounts check(const TreeCase& c, Left left, std::size_t ray_count, std::size_t
   const TestTree test_tree(c);
   CounterRandom random(c.seed + 991);
   const std::vector<bool> chosen = choose(test_tree.tree(), left, random);
-  const TestSelection selection(chosen, &test_tree.tree());
+  const TestSelection selection(chosen);
   const kernels::PkdTree tree = filtered(test_tree.tree(), selection, c.seed);
   std::ostringstream what;
-  what << c << ", left " << name_of(left) << ", thinning " << tree.selected.thinning << ", copies "
-       << tree.copies.exist();
+  what << c << ", left " << name_of(left) << ", thinning " << tree.selected.thinning;
   const std::vector<kernels::Ray> rays = make_rays(test_tree, ray_count, random);
   check_reference(tree, chosen, rays, what.str());
   const HitCounts counts = expect_brute_force_hits(tree, rays, all_hits_every, what.str());
@@ -166,7 +163,7 @@ TEST_P(FilteredShape, FromACamera) {
     c.seed = ++seed;
     const TestTree test_tree(c);
     CounterRandom random(seed);
-    const TestSelection selection(choose(test_tree.tree(), left, random), &test_tree.tree());
+    const TestSelection selection(choose(test_tree.tree(), left, random));
     const kernels::PkdTree tree = filtered(test_tree.tree(), selection, seed);
     for (const double distance : {0.0, 1.0}) {
       double ahead[3];

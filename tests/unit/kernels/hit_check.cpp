@@ -45,6 +45,7 @@ std::string describe(const Hit& hit) {
   return out.str();
 }
 
+// Treelets, and under a filter, if wanted, copies of what it leaves.
 class TestTreelets {
  public:
   TestTreelets(const PkdTree& tree, unsigned depth)
@@ -53,11 +54,37 @@ class TestTreelets {
     build_treelets(tree, treelets_, nodes_.data());
     treelets_.nodes = nodes_.data();
   }
+  void copy(const PkdTree& tree) {
+    std::uint64_t next = 0;
+    for (std::uint64_t number = 0; number < treelets_.count; ++number) {
+      before_.push_back(static_cast<std::uint32_t>(place_of_.size()));
+      const kernels::TreeletRun run = treelets_.run_of_treelet(number);
+      EXPECT_EQ(run.begin, next);
+      next = run.begin + run.span;
+      for (std::uint64_t place = run.begin; place < std::min(next, tree.count); ++place) {
+        if (!tree.selected.has(place)) continue;
+        place_of_.push_back(static_cast<std::uint32_t>(place));
+        double centre[3];
+        tree.centre(place, centre);
+        for (const double x : centre) centres_.push_back(static_cast<float>(x));
+      }
+    }
+    EXPECT_EQ(next, tree.count + 1);
+    before_.push_back(static_cast<std::uint32_t>(place_of_.size()));
+    centres_.resize(centres_.size() + std::size_t{3} * 16);
+  }
   const kernels::Treelets& treelets() const { return treelets_; }
+  kernels::SelectedCopies copies() const {
+    return before_.empty() ? kernels::SelectedCopies()
+                           : kernels::SelectedCopies{centres_.data(), place_of_.data(), before_.data()};
+  }
 
  private:
   std::vector<kernels::TreeletNode> nodes_;
   kernels::Treelets treelets_;
+  std::vector<float> centres_;
+  std::vector<std::uint32_t> place_of_;
+  std::vector<std::uint32_t> before_;
 };
 
 void normalise(double v[3]) {
@@ -210,8 +237,13 @@ HitCounts expect_brute_force_hits(const PkdTree& tree, const std::vector<Ray>& r
 #else
   const std::vector<unsigned> depths = {1u, 4u, deepest - 1};
 #endif
-  for (const unsigned depth : depths)
-    if (depth >= 1 && depth < deepest) treelets.emplace_back(tree, depth);
+  for (const unsigned depth : depths) {
+    if (depth < 1 || depth >= deepest) continue;
+    treelets.emplace_back(tree, depth);
+    if (tree.selected.all()) continue;
+    treelets.emplace_back(tree, depth);
+    treelets.back().copy(tree);
+  }
 
   for_each_simd_target([&](const char* target) {
     std::vector<Hit> hits(rays.size());
@@ -241,9 +273,12 @@ HitCounts expect_brute_force_hits(const PkdTree& tree, const std::vector<Ray>& r
     for (const TestTreelets& own : treelets) {
       std::fill(hits.begin(), hits.end(), Hit{});
       std::fill(occluded.begin(), occluded.end(), 0);
-      kernels::treelet_first_hits(tree, own.treelets(), rays.data(), hits.data(), rays.size());
-      kernels::treelet_any_hits(tree, own.treelets(), rays.data(), occluded.data(), rays.size());
-      const std::string with = " with " + std::to_string(own.treelets().count) + " treelets";
+      PkdTree with_copies = tree;
+      with_copies.copies = own.copies();
+      kernels::treelet_first_hits(with_copies, own.treelets(), rays.data(), hits.data(), rays.size());
+      kernels::treelet_any_hits(with_copies, own.treelets(), rays.data(), occluded.data(), rays.size());
+      const std::string with = " with " + std::to_string(own.treelets().count) + " treelets" +
+                               (with_copies.copies.exist() ? " and copies" : "");
       for (std::size_t i = 0; i < rays.size(); ++i) {
         if (!is_same(hits[i], expected[i]))
           complain(i, "first hit " + describe(hits[i]) + " instead of " + describe(expected[i]) + with);
