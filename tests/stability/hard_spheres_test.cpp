@@ -220,6 +220,35 @@ TEST(HardSpheres, RadiiFrom1e8thTo1e3) {
   EXPECT_GT(counts.hits, 2000u);
 }
 
+// So small that f32 tells nothing of them but where they are, with rays that pass them by so little that in f32 they go
+// through the middle: what is behind, in front or around must be hit all the same.
+TEST(HardSpheres, PassedByLessThanF32Tells) {
+  CounterRandom random(12);
+  Spheres spheres;
+  const double far_away[3] = {3e3, 0.0, 0.0};
+  spheres.add(far_away, 1e3);
+  std::vector<kernels::Ray> rays;
+  for (int i = 0; i < 240; ++i) {
+    double centre[3];
+    for (double& x : centre) x = random.sign() * (16.0 + static_cast<double>(random.below(400)));
+    spheres.add(centre, 1e-8);
+    const int axis = i % 3;
+    kernels::Ray ray{};
+    ray.direction[axis] = random.sign();
+    std::copy_n(centre, 3, ray.origin);
+    ray.origin[axis] -= 8.0 * ray.direction[axis];
+    ray.origin[(axis + 1) % 3] += 1e-7;
+    rays.push_back(ray);
+    if (i % 2 == 0) continue;
+    double behind[3];
+    std::copy_n(centre, 3, behind);
+    behind[axis] += 4.0 * ray.direction[axis];
+    spheres.add(behind, 1.0);
+  }
+  const Counts counts = judge("passed by less than f32 tells", spheres, rays);
+  EXPECT_GT(counts.hits, 100u);
+}
+
 TEST(HardSpheres, FromFarAway) {
   CounterRandom random(3);
   const Spheres spheres = random_spheres(200, 1.0, -2.0, -1.0, random);

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "core/float_environment.h"
@@ -40,7 +41,8 @@ class TreeMend {
     run_ = leaf_;
     if (height_for(end - begin) > most_height_) run_ *= 128;
     const unsigned height = height_for(end - begin);
-    nodes_.resize((std::size_t{1} << height) - 1);
+    // Not set to anything: the threads that fit them write all of them.
+    nodes_.reset(new Known[(std::size_t{1} << height) - 1]);
     const Node root = {begin, end, 0, height};
     fit(root);
     mend(root, box, build, put_preferred_first);
@@ -423,7 +425,7 @@ class TreeMend {
   const std::uint64_t leaf_;
   const unsigned most_height_;
   std::uint64_t run_ = 0;  // subtrees of at most so many particles have bounds as a whole
-  std::vector<Known> nodes_;
+  std::unique_ptr<Known[]> nodes_;
   tbb::enumerable_thread_specific<Lists> lists_;
 };
 
