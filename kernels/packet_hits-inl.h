@@ -30,7 +30,7 @@ class PacketHits {
   }
 
   // Rays [first, first + count) of the stream, which packet.rays holds: where they enter the tree.
-  void Enter(RayPacket& packet, std::size_t first, std::size_t count) const {
+  HWY_INLINE void Enter(RayPacket& packet, std::size_t first, std::size_t count) const {
     NoteLimits(packet, hits_ + first, count);
     EnterTree(tree_, margin_, packet.rays, packet.limit, true, packet.lanes);
     packet.first_ray = static_cast<std::uint32_t>(first);

@@ -54,7 +54,7 @@ class RayPacket {
   std::uint32_t first_ray;
 
   // Of the rays of `active`, all of one octant.
-  void MakeBeam(std::uint32_t active, double margin, RayBeam& beam) {
+  HWY_INLINE void MakeBeam(std::uint32_t active, double margin, RayBeam& beam) {
     const D d;
     const std::size_t n = hn::Lanes(d);
     // The axis lies between the first and the last of the rays: opposite corners, when they come from a square of
