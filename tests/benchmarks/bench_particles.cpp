@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
   std::vector<std::string> scenes = {"uniform", "clustered"};
   app.add_flag("--quick", frames.quick,
                "1M particles, 448 x 448 pixels, one build quality, 3 repetitions: within 45 s");
-  app.add_flag("--large", large, "100 million particles as well");
+  app.add_flag("--large", large, "100 million particles as well: frames, one of Embree's structures after another");
   app.add_flag("--builds-only", builds_only, "builds without frames");
   app.add_flag("--frames-only", frames_only, "frames without builds");
   app.add_flag("--variants-only", variants_only, "only the paper's structure beside ours");
@@ -55,7 +55,8 @@ int main(int argc, char** argv) {
   }
   if (counts.empty())
     counts = frames.quick ? std::vector<std::uint64_t>{1000000} : std::vector<std::uint64_t>{1000000, 10000000};
-  if (large) counts.push_back(100000000);
+  constexpr std::uint64_t large_count = 100000000;
+  if (large) counts.push_back(large_count);
 
   bench::Report report(argc, argv);
   report.context()["image_edge_px"] = frames.image_edge_px;
@@ -74,6 +75,12 @@ int main(int argc, char** argv) {
   for (const std::uint64_t count : counts) {
     for (const std::string& name : scenes) {
       const bench::ParticleScene scene = bench::make_scene(name, count);
+      if (count >= large_count) {
+        // Memory is for one comparison at a time.
+        if (!builds_only && !filters_only && !variants_only)
+          measure_frames(frames, scene, teams, metrics, report.context()["frames"]);
+        continue;
+      }
       if (with_builds) {
         note(measure_builds(builds, scene, teams, report.context()["builds"]));
         if (name == "uniform")
@@ -92,7 +99,7 @@ int main(int argc, char** argv) {
   // Neither fits into 45 seconds.
   const bool whole = !frames.quick && !builds_only && !frames_only && !variants_only && !filters_only;
   if ((whole && !cosmo_only) || counts_only)
-    measure_frames_vs_count(frames, scenes, large ? 100000000 : 10000000, teams.back(), metrics,
+    measure_frames_vs_count(frames, scenes, large ? large_count : 10000000, teams.back(), metrics,
                             report.context()["frames_vs_log_n"]);
   if ((whole && !counts_only) || cosmo_only)
     for (const auto& [metric, value] : bench::measure_cosmo_steps(report.context()["cosmo"]))
