@@ -19,10 +19,7 @@ template <class Positions>
 class PacketHits {
  public:
   PacketHits(const PkdTree& tree, const Positions& positions, const TreeMargin& margin)
-      : tree_(tree),
-        positions_(positions),
-        margin_(margin),
-        shrink_(static_cast<float>(2.0 * margin.value * (1.0 + 1e-3))) {}
+      : tree_(tree), positions_(positions), margin_(margin), shrink_(margin.twice()) {}
 
   void Begin(const Ray* rays, Hit* hits) {
     rays_ = rays;
@@ -44,7 +41,8 @@ class PacketHits {
       const V never = hn::Set(d, -std::numeric_limits<float>::infinity());
       hn::Store(hn::IfThenElse(RayPacket::LanesOf(may_note, i), earliest, never), d, packet.best_earliest + i);
       hn::Store(hn::Add(hn::Load(d, packet.lanes.t_low + i), shrink), d, packet.t_certain + i);
-      for (auto& centres : packet.best_centre) hn::Store(hn::Zero(d), d, centres + i);
+      if constexpr (Positions::is_exact_in_f32)  // lanes without a candidate are confirmed along, and left alone
+        for (auto& centres : packet.best_centre) hn::Store(hn::Zero(d), d, centres + i);
     }
   }
 
@@ -118,17 +116,20 @@ class PacketHits {
     const hn::CappedTag<double, size> d;
     const hn::Rebind<float, decltype(d)> f;
     using W = hn::Vec<decltype(d)>;
-    HWY_ALIGN double centre[3][size];
-    HWY_ALIGN double radius[size];
+    HWY_ALIGN double centre[3][size] = {};
+    HWY_ALIGN double radius[size] = {};
     HWY_ALIGN double t[size];
     const bool uniform = tree_.radius.kind == RadiusView::Kind::uniform;
     if (!Positions::is_exact_in_f32 || !uniform) {
-      for (std::size_t lane = 0; lane < size; ++lane) {
-        const std::uint64_t place = packet.best_place[(packet.noted >> lane & 1) != 0 ? lane : first_of(packet.noted)];
-        double at[3];
-        if (!Positions::is_exact_in_f32) positions_.centre(place, at);
-        for (std::size_t c = 0; c < 3; ++c) centre[c][lane] = at[c];
+      for (std::uint32_t left = packet.noted; left != 0; left &= left - 1) {
+        const std::size_t lane = first_of(left);
+        const std::uint64_t place = packet.best_place[lane];
         radius[lane] = tree_.radius.value(tree_.item(place));
+        if constexpr (!Positions::is_exact_in_f32) {
+          double at[3];
+          positions_.centre(place, at);
+          for (std::size_t c = 0; c < 3; ++c) centre[c][lane] = at[c];
+        }
       }
     }
     const auto centres = [&](std::size_t c, std::size_t i) HWY_ATTR {

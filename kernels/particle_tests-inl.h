@@ -17,10 +17,11 @@ class ParticleTests {
  public:
   static constexpr std::size_t most_lanes = 16;
 
-  ParticleTests(const PkdTree& tree, double margin)
+  ParticleTests(const PkdTree& tree, const TreeMargin& margin)
       : tree_(tree),
-        margin_above_(static_cast<float>(margin * (1.0 + 2.0 * f32_unit))),
-        uniform_(tree.radius.kind == RadiusView::Kind::uniform) {
+        margin_above_(static_cast<float>(margin.value * (1.0 + 2.0 * f32_unit))),
+        uniform_(tree.radius.kind == RadiusView::Kind::uniform),
+        shrink_(margin.twice()) {
     const ArrayView& radii = tree.radius.array;
     const bool by_place = tree.index32 == nullptr && tree.index64 == nullptr;
     if (tree.radius.kind == RadiusView::Kind::per_item && by_place && !radii.rows &&
@@ -29,10 +30,9 @@ class ParticleTests {
       packed_radii_ = radii.base[0];
       packed_in_f32_ = radii.type == Scalar::f32;
     }
-    const double wide = tree.radius.uniform + margin;
-    const double inner = std::max(tree.radius.uniform - margin, 0.0);
+    const double wide = tree.radius.uniform + margin.value;
+    const double inner = std::max(tree.radius.uniform - margin.value, 0.0);
     inner2_ = static_cast<float>(inner * inner * (1.0 - 8.0 * f32_unit));
-    shrink_ = static_cast<float>(2.0 * margin * (1.0 + 1e-3));
     radius_ = static_cast<float>(wide * (1.0 + 4.0 * f32_unit));
     radius2_ = static_cast<float>(wide * wide * (1.0 + 8.0 * f32_unit));
   }

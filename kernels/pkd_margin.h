@@ -28,6 +28,9 @@ struct TreeMargin {
     return distance < farthest;
   }
 
+  // Not less than two of them.
+  float twice() const { return static_cast<float>(2.0 * value * (1.0 + 1e-3)); }
+
   explicit TreeMargin(const PkdTree& tree) {
     double diagonal2 = 0.0;
     double magnitude = 0.0;

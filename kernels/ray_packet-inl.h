@@ -32,7 +32,7 @@ class StreamPackets {
         positions_(positions),
         margin_(margin),
         copied_(copied),
-        tests_(tree, margin.value),
+        tests_(tree, margin),
         found_(tree, positions, margin),
         packets_(new RayPacket[(most_rays + size - 1) / size]),
         beams_(new RayBeam[most_octants * ((most_rays + size - 1) / size)]) {}

@@ -33,7 +33,7 @@ class StreamRays {
         positions_(positions),
         margin_(margin),
         copied_(copied),
-        tests_(tree, margin.value),
+        tests_(tree, margin),
         rays_(new WalkRay[most_rays]) {}
 
   // rays[0 .. count) that are not occluded yet; octants[i] is no_octant when there is nothing left to trace.

@@ -1,8 +1,6 @@
 // Instructions per ray, counted by callgrind: the same in every run, whatever else the machine does. The program runs
 // itself under valgrind, which emulates a processor with AVX2: what a wider instruction set makes of the same code, and
 // what memory takes, it does not know.
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -19,6 +17,7 @@
 #include "measure.h"
 #include "own_particles.h"
 #include "paper_tree.h"
+#include "temporary_folder.h"
 
 using insitu::ParticleOrder;
 using insitu::kernels::Hit;
@@ -160,10 +159,8 @@ int main(int argc, char** argv) {
   if (options.quick && options.child.empty()) options.particles = 20000;
   if (!options.child.empty()) return trace_all(options);
   try {
-    std::string directory = std::filesystem::temp_directory_path() / "insitu_instructions_XXXXXX";
-    if (mkdtemp(directory.data()) == nullptr) throw std::runtime_error("no directory for counts: " + directory);
-    const std::map<std::string, double> counts = count_all(options, directory);
-    std::filesystem::remove_all(directory);
+    const insitu::testing::TemporaryFolder folder;
+    const std::map<std::string, double> counts = count_all(options, folder.path().string());
     bench::Report report(argc, argv);
     std::printf("instructions per ray, AVX2, %llu particles\n", static_cast<unsigned long long>(options.particles));
     for (const auto& [name, count] : counts) {

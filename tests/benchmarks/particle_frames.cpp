@@ -121,8 +121,8 @@ struct View {
 };
 
 // A pass: those of Embree's structures that there are, and ours, take turns.
-void time_view(const FrameOptions& options, const std::vector<Candidate>& candidates, std::vector<Own>& owns,
-               std::vector<insitu::Workers>& teams, View& view, nlohmann::ordered_json& rows) {
+void time_view(const FrameOptions& options, const ParticleScene& scene, const std::vector<Candidate>& candidates,
+               std::vector<Own>& owns, std::vector<insitu::Workers>& teams, View& view, nlohmann::ordered_json& rows) {
   prepare_view(owns, view.camera, options.ao_reach);
   const std::vector<Ray>& camera = view.camera;
   const std::vector<Ray>& ao = owns.front().ao;
@@ -184,8 +184,8 @@ void time_view(const FrameOptions& options, const std::vector<Candidate>& candid
     }
     times.own.resize(owns.size());
     for (std::size_t k = 0; k < owns.size(); ++k, next += 2) times.own[k].push_back({s[next], s[next + 1]});
-    nlohmann::ordered_json row = {
-        {"view", view.name}, {"threads", threads}, {"camera_rays", camera.size()}, {"ao_rays", ao.size()}};
+    nlohmann::ordered_json row = {{"scene", scene.name}, {"particles", scene.count()},   {"view", view.name},
+                                  {"threads", threads},  {"camera_rays", camera.size()}, {"ao_rays", ao.size()}};
     for (std::size_t i = 0; i < contenders.size(); ++i) row["seconds"][contenders[i].name] = s[i];
     rows.push_back(row);
   }
@@ -280,15 +280,7 @@ void measure_frames(const FrameOptions& options, const ParticleScene& scene, std
     views.push_back({name, camera_rays(name, options.image_edge_px), 0, std::vector<ViewTimes>(teams.size())});
   const auto pass = [&](const std::vector<EmbreeGeometry>& geometries) {
     const std::vector<Candidate> candidates = build_embree(geometries, qualities, scene, workers, metrics);
-    for (View& view : views) {
-      nlohmann::ordered_json view_rows;
-      time_view(options, candidates, owns, teams, view, view_rows);
-      for (nlohmann::ordered_json& row : view_rows) {
-        row["scene"] = scene.name;
-        row["particles"] = scene.count();
-        rows.push_back(row);
-      }
-    }
+    for (View& view : views) time_view(options, scene, candidates, owns, teams, view, rows);
   };
   if (at_once) {
     pass({EmbreeGeometry::sphere_point, EmbreeGeometry::user_spheres});

@@ -140,6 +140,8 @@ unsigned ParticleSelection::thinning_of(std::uint64_t count) const {
 }
 
 double ParticleSelection::run_length_for(double wanted) const {
+  // Bits of a word of the second level: where there are no copies, all places of a run are looked at.
+  constexpr double longest = 4096.0;
   std::vector<bool> any(SelectedPlaces::words(places_in_tree_));
   for (std::size_t k = 0; k < any.size(); ++k) any[k] = places_.level[0][k] != 0;
   double length = FilterBlock::most;
@@ -147,7 +149,7 @@ double ParticleSelection::run_length_for(double wanted) const {
     // What a run has that has any; of one twice as long it may be more.
     const auto runs = static_cast<double>(std::count(any.begin(), any.end(), true));
     const double held = static_cast<double>(found_.drawn) / std::max(runs, 1.0);
-    if (2.0 * held > wanted || any.size() <= 1) return length * wanted / std::max(held, 1.0);
+    if (2.0 * held > wanted || length >= longest) return std::min(length * wanted / std::max(held, 1.0), longest);
     for (std::size_t k = 0; 2 * k < any.size(); ++k) any[k] = any[2 * k] || (2 * k + 1 < any.size() && any[2 * k + 1]);
     any.resize((any.size() + 1) / 2);
   }

@@ -25,7 +25,8 @@ class ParticleSelection {
   const kernels::SelectedPlaces& places() const { return places_; }
   const ScanResult& found() const { return found_; }
   std::uint64_t bytes() const { return words_.bytes(); }
-  // Of runs of so many places those that have any drawn particle have `wanted` on average. After build().
+  // Of runs of so many places, 4096 at most, those that have any drawn particle have `wanted` on average. After
+  // build().
   double run_length_for(double wanted) const;
 
  private:

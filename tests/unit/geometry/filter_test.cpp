@@ -120,7 +120,7 @@ TEST(ParticleFilter, IsTheParticlesThatAreLeft) {
             expect_as_alone(particles, given, given.up_to(high), each_radius);
             if (count == 5000) {
               EXPECT_EQ(particles.tree().copies.exist(), share > 0.0 && high > 0.0 && high < 0.5) << high;
-              EXPECT_EQ(particles.treelets().exist(), share > 0.0 && high > 0.0);  // none around nothing
+              EXPECT_EQ(particles.treelets().exist(), share > 0.0);
             }
           }
           EXPECT_EQ(particles.how_built().how, how);
@@ -131,6 +131,30 @@ TEST(ParticleFilter, IsTheParticlesThatAreLeft) {
       }
     }
   }
+}
+
+// Treelets hold as many particles that are drawn as they hold without a filter: 16, or half as many, because their
+// number is a power of two. Of very few particles they are shorter than that.
+TEST(ParticleFilter, LeavesTreeletsFull) {
+  Cloud cloud(150000);
+  Budget budget(0);
+  Particles particles("p", ParticleOrder::permute, true);
+  particles.bind(cloud.arrays(0.3, false));
+  particles.build(budget);
+  const std::uint64_t all = particles.treelets().count;
+  for (const double high : {0.5, 0.1, 0.02}) {
+    particles.set_filter(between("value", -infinity, high));
+    particles.select(budget);
+    const double held = static_cast<double>(particles.shown_count()) / static_cast<double>(particles.treelets().count);
+    EXPECT_GT(held, 8.0) << high;
+    EXPECT_LE(held, 16.5) << high;
+  }
+  particles.set_filter(between("value", -infinity, 0.0001));
+  particles.select(budget);
+  EXPECT_GE(particles.treelets().count, cloud.value.size() / 4096);
+  particles.set_filter(nullptr);
+  particles.select(budget);
+  EXPECT_EQ(particles.treelets().count, all);
 }
 
 TEST(ParticleFilter, ItsBitsAreCountedAndGivenBack) {
